@@ -1,0 +1,18 @@
+# How this project's own programs are compiled. None of it reaches programs that use the library.
+include_guard()
+
+add_library(tactoid_build_flags INTERFACE)
+if(MSVC)
+  target_compile_options(tactoid_build_flags INTERFACE /W4 $<$<BOOL:${TACTOID_WARNINGS_AS_ERRORS}>:/WX>)
+else()
+  target_compile_options(
+    tactoid_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+                                  $<$<BOOL:${TACTOID_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(TACTOID_NATIVE)
+    target_compile_options(tactoid_build_flags INTERFACE -march=native)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+      # g++ 12 warns of its own AVX-512 intrinsics, which leave a register undefined on purpose (GCC bug 105593).
+      target_compile_options(tactoid_build_flags INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+    endif()
+  endif()
+endif()

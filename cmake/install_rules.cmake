@@ -1,0 +1,31 @@
+# install(): headers, the exported target, and the package files for find_package(tactoid).
+include_guard()
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(downloaded ${tactoid_fetched})
+list(FILTER downloaded INCLUDE REGEX "^(Eigen3|nanoflann|fmt)$")
+if(downloaded)
+  list(JOIN downloaded ", " downloaded)
+  message(STATUS "tactoid: no install target, because ${downloaded} came by download and is not installed itself")
+  return()
+endif()
+
+set(tactoid_package_dir "${CMAKE_INSTALL_DATADIR}/cmake/tactoid")
+install(
+  TARGETS tactoid
+  EXPORT tactoidTargets
+  FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(
+  EXPORT tactoidTargets
+  NAMESPACE tactoid::
+  DESTINATION "${tactoid_package_dir}")
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/tactoidConfig.cmake.in"
+                              "${CMAKE_CURRENT_BINARY_DIR}/tactoidConfig.cmake"
+                              INSTALL_DESTINATION "${tactoid_package_dir}")
+# Header-only, so the package fits every architecture. Before 1.0 a minor version may break.
+write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/tactoidConfigVersion.cmake"
+                                 COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/tactoidConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/tactoidConfigVersion.cmake"
+        DESTINATION "${tactoid_package_dir}")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <tactoid/core/errors.hpp>
+
+namespace tactoid {
+
+/// Runs `body()` as the whole of a program: its exit status, or a sentence on the error output and the status of the
+/// failure: 2 for what the user can mend before the run (parameters, geometry, files), 3 for a computation that broke.
+template <class Body>
+int run_program(std::string_view name, const Body& body) {
+  const auto report = [&](std::string_view text, int status) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}: {}\n", name, text);
+    return status;
+  };
+  try {
+    return body();
+  } catch (const ComputationError& error) {
+    return report(error.what(), 3);
+  } catch (const Error& error) {
+    return report(error.what(), 2);
+  } catch (const std::bad_alloc&) {
+    return report("There is not enough memory for this run.", 3);
+  } catch (const std::exception& error) {
+    return report(error.what(), 3);
+  }
+}
+
+}  // namespace tactoid

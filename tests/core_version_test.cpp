@@ -1,0 +1,10 @@
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include <tactoid/core/version.hpp>
+
+TEST_CASE("the version as a text is the version in numbers") {
+  CHECK(tactoid::version == std::to_string(TACTOID_VERSION_MAJOR) + "." + std::to_string(TACTOID_VERSION_MINOR) + "." +
+                                std::to_string(TACTOID_VERSION_PATCH));
+}
