@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/Geometry>
+
+#include <tactoid/geometry/point_cloud.hpp>
+
+namespace tactoid {
+
+/// Corners of a background cell: 2^D points in tensor order.
+template <int D>
+using Corners = std::array<Point<D>, (1u << D)>;
+
+/// Reference positions of a cell's corners, m. In periodic directions they stand around the first one.
+template <int D>
+[[nodiscard]] Corners<D> cell_corners(const PointCloud<D>& cloud, const typename PointCloud<D>::Cell& cell) {
+  Corners<D> corners;
+  const Point<D>& first = cloud.positions[cell[0]];
+  for (std::size_t a = 0; a < corners.size(); ++a)
+    corners[a] = first + cloud.difference(first, cloud.positions[cell[a]]);
+  return corners;
+}
+
+/// Reference positions of a facet's corners, m. In periodic directions they stand around the first one.
+template <int D>
+[[nodiscard]] std::array<Point<D>, (1u << (D - 1))> facet_corners(const PointCloud<D>& cloud,
+                                                                 const typename PointCloud<D>::Facet& facet) {
+  std::array<Point<D>, (1u << (D - 1))> corners;
+  const Point<D>& first = cloud.positions[facet[0]];
+  for (std::size_t a = 0; a < corners.size(); ++a)
+    corners[a] = first + cloud.difference(first, cloud.positions[facet[a]]);
+  return corners;
+}
+
+/// Multilinear shape function of corner `a` of the unit cube at `xi`: Π_k (ξ_k or 1 − ξ_k).
+template <int D>
+[[nodiscard]] double corner_function(std::size_t a, const Point<D>& xi) {
+  double n = 1.0;
+  for (int k = 0; k < D; ++k) n *= ((a >> k) & 1u) != 0 ? xi[k] : 1.0 - xi[k];
+  return n;
+}
+
+/// Multilinear map of the unit cube onto the cell: X(ξ) = Σ_a N_a(ξ) X_a, m.
+template <int D>
+[[nodiscard]] Point<D> cell_position(const Corners<D>& corners, const Point<D>& xi) {
+  Point<D> x = Point<D>::Zero();
+  for (std::size_t a = 0; a < corners.size(); ++a) x += corner_function<D>(a, xi) * corners[a];
+  return x;
+}
+
+/// Jacobian matrix ∂X_i/∂ξ_k of the multilinear map, m.
+template <int D>
+[[nodiscard]] Eigen::Matrix<double, D, D> cell_jacobian(const Corners<D>& corners, const Point<D>& xi) {
+  Eigen::Matrix<double, D, D> jacobian = Eigen::Matrix<double, D, D>::Zero();
+  for (std::size_t a = 0; a < corners.size(); ++a) {
+    for (int k = 0; k < D; ++k) {
+      double slope = ((a >> k) & 1u) != 0 ? 1.0 : -1.0;
+      for (int l = 0; l < D; ++l)
+        if (l != k) slope *= ((a >> l) & 1u) != 0 ? xi[l] : 1.0 - xi[l];
+      jacobian.col(k) += slope * corners[a];
+    }
+  }
+  return jacobian;
+}
+
+/// Gauss–Legendre points and weights on [0, 1]; exact for polynomials of degree 2 N − 1.
+template <int N>
+struct GaussRule {
+  static_assert(N >= 1 && N <= 3, "Gauss rules have 1, 2 or 3 points per direction.");
+  std::array<double, static_cast<std::size_t>(N)> points{};
+  std::array<double, static_cast<std::size_t>(N)> weights{};
+};
+
+template <int N>
+[[nodiscard]] GaussRule<N> gauss_rule() {
+  if constexpr (N == 1) {
+    return {{0.5}, {1.0}};
+  } else if constexpr (N == 2) {
+    const double d = 0.5 / std::sqrt(3.0);
+    return {{0.5 - d, 0.5 + d}, {0.5, 0.5}};
+  } else {
+    const double d = 0.5 * std::sqrt(0.6);
+    return {{0.5 - d, 0.5, 0.5 + d}, {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0}};
+  }
+}
+
+/// Calls visit(ξ, weight) for the N^D points of the product rule on the box [lower, lower + width]^D.
+template <int N, int D, class Visit>
+void for_each_gauss_point(const Point<D>& lower, double width, const Visit& visit) {
+  const GaussRule<N> rule = gauss_rule<N>();
+  int count = 1;
+  for (int k = 0; k < D; ++k) count *= N;
+  for (int q = 0; q < count; ++q) {
+    Point<D> xi;
+    double weight = 1.0;
+    for (int k = 0, rest = q; k < D; ++k, rest /= N) {
+      const auto i = static_cast<std::size_t>(rest % N);
+      xi[k] = lower[k] + width * rule.points[i];
+      weight *= width * rule.weights[i];
+    }
+    visit(xi, weight);
+  }
+}
+
+}  // namespace tactoid

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <tactoid/core/tensor.hpp>
+
+namespace tactoid {
+
+/// Particles of one body in its reference configuration, with the background cells that give them volumes,
+/// quadrature cells, surface facets and pictures. The cells are no finite elements.
+///
+/// D = 1: lines and points, D = 2: quadrilaterals and lines, D = 3: hexahedra and quadrilaterals.
+/// Vertices stand in tensor order: vertex i + 2 j + 4 k of a cell is the corner (i, j, k) of the unit cube,
+/// and the Jacobian of the cell is positive. For a facet x(s, t) in that order, ∂x/∂s × ∂x/∂t points
+/// outwards (D = 3); for a segment from a to b, the tangent turned by −90° does (D = 2).
+template <int D>
+struct PointCloud {
+  static_assert(D >= 1 && D <= 3, "A point cloud has 1, 2 or 3 dimensions.");
+  static constexpr int dimension = D;
+  using Cell = std::array<Index, (1u << D)>;
+  using Facet = std::array<Index, (1u << (D - 1))>;
+
+  std::vector<Point<D>> positions;                   ///< reference positions X, m
+  std::vector<Cell> cells;                           ///< background cells
+  std::vector<Index> cell_regions;                   ///< region of each cell, an index into `regions`
+  std::vector<std::string> regions = {"body"};       ///< names of the regions
+  std::vector<Facet> facets;                         ///< the boundary, oriented outwards
+  Point<D> period = Point<D>::Zero();                ///< period in each direction, m; 0 where not periodic
+
+  [[nodiscard]] std::size_t size() const { return positions.size(); }
+
+  /// b − a by the shortest way around in periodic directions.
+  [[nodiscard]] Point<D> difference(const Point<D>& a, const Point<D>& b) const {
+    Point<D> d = b - a;
+    for (int k = 0; k < D; ++k)
+      if (period[k] > 0.0) d[k] -= period[k] * std::round(d[k] / period[k]);
+    return d;
+  }
+};
+
+/// Indices of the particles whose reference position satisfies `predicate`.
+template <int D, class Predicate>
+[[nodiscard]] std::vector<Index> select(const PointCloud<D>& cloud, const Predicate& predicate) {
+  std::vector<Index> chosen;
+  for (Index i = 0; i < cloud.size(); ++i)
+    if (predicate(cloud.positions[i])) chosen.push_back(i);
+  return chosen;
+}
+
+}  // namespace tactoid

@@ -1,0 +1,4 @@
+#pragma once
+
+#include <tactoid/neighbors/neighbor_search.hpp>
+#include <tactoid/neighbors/neighbor_table.hpp>
