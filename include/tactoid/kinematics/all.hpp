@@ -1,0 +1,3 @@
+#pragma once
+
+#include <tactoid/kinematics/kinematics.hpp>

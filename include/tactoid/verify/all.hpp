@@ -1,0 +1,4 @@
+#pragma once
+
+#include <tactoid/verify/gate_report.hpp>
+#include <tactoid/verify/material_gate.hpp>
