@@ -1,0 +1,9 @@
+#pragma once
+
+#include <tactoid/quadrature/coloring.hpp>
+#include <tactoid/quadrature/consistency.hpp>
+#include <tactoid/quadrature/gauss_cells.hpp>
+#include <tactoid/quadrature/nodal_centroids.hpp>
+#include <tactoid/quadrature/particle_values.hpp>
+#include <tactoid/quadrature/point_table.hpp>
+#include <tactoid/quadrature/quadrature.hpp>

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <bitset>
+#include <vector>
+
+#include <tactoid/core/errors.hpp>
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/quadrature/point_table.hpp>
+
+namespace tactoid {
+
+/// Cuts the points of a table into chunks of one region and at most `points_per_chunk` points, and colours the
+/// chunks so that no two of one colour share a particle. Chunks of one colour may then add to the particles at
+/// the same time, and every particle receives its contributions in the order of the colours: the same bits for
+/// any number of threads. Points must be sorted by region. Among the colours allowed for a chunk the least used
+/// one is taken, which keeps the threads evenly loaded.
+inline void color_chunks(PointTable& table, std::size_t points_per_chunk) {
+  points_per_chunk = std::max<std::size_t>(8, points_per_chunk / 8 * 8);  // whole blocks of lanes
+
+  std::vector<PointChunk> chunks;
+  for (std::size_t q = 0; q < table.points();) {
+    std::size_t end = q;
+    while (end < table.points() && end - q < points_per_chunk && table.region[end] == table.region[q]) ++end;
+    chunks.push_back({q, end, table.region[q]});
+    q = end;
+  }
+  constexpr std::size_t max_colors = 256;
+  std::vector<std::bitset<max_colors>> used(table.particles);  // colours of the chunks that touch each particle
+  std::vector<std::size_t> color(chunks.size());
+  std::vector<std::size_t> count(max_colors, 0);
+  std::size_t colors = 0;
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    std::bitset<max_colors> taken;
+    for (std::size_t e = table.offsets[chunks[c].begin]; e < table.offsets[chunks[c].end]; ++e)
+      taken |= used[table.entries[e].particle];
+    std::size_t best = max_colors;
+    for (std::size_t k = 0; k < colors; ++k)
+      if (!taken[k] && (best == max_colors || count[k] < count[best])) best = k;
+    if (best == max_colors && colors < max_colors) best = colors++;
+    if (best == max_colors)
+      throw GeometryError("The points cannot be coloured with 256 colours: the supports of the kernel are too large.");
+    color[c] = best;
+    ++count[best];
+    for (std::size_t e = table.offsets[chunks[c].begin]; e < table.offsets[chunks[c].end]; ++e)
+      used[table.entries[e].particle].set(best);
+  }
+  table.chunks.clear();
+  table.color_offsets.assign(1, 0);
+  for (std::size_t k = 0; k < colors; ++k) {
+    for (std::size_t c = 0; c < chunks.size(); ++c)
+      if (color[c] == k) table.chunks.push_back(chunks[c]);
+    table.color_offsets.push_back(table.chunks.size());
+  }
+}
+
+/// Calls body(chunk, number of the chunk) for every chunk, colour after colour, on all threads.
+template <class Body>
+void for_each_chunk(const PointTable& table, const Body& body) {
+  for (std::size_t k = 0; k + 1 < table.color_offsets.size(); ++k) {
+    const std::size_t first = table.color_offsets[k];
+    parallel_for(table.color_offsets[k + 1] - first,
+                 [&](std::size_t c) { body(table.chunks[first + c], first + c); });
+  }
+}
+
+}  // namespace tactoid

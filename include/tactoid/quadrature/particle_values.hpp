@@ -1,0 +1,62 @@
+#pragma once
+
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/core/tensor.hpp>
+#include <tactoid/quadrature/point_table.hpp>
+
+namespace tactoid {
+
+/// The map from the unknowns of a body to the values of its fields at the particles, u(X_I) = Σ_J φ_J(X_I) u_J, and
+/// its transpose, which hands a force at a particle to the unknowns. The identity where unknowns are values.
+class ParticleValues {
+ public:
+  ParticleValues() = default;
+  explicit ParticleValues(const ValueRows& rows) : rows_(rows) {
+    if (rows_.empty()) return;
+    // The transpose by rows of the unknowns: each sum is made by one thread, in a fixed order.
+    const std::size_t n = rows_.offsets.size() - 1;
+    transpose_.offsets.assign(n + 1, 0);
+    for (Index j : rows_.particles) ++transpose_.offsets[j + 1];
+    for (std::size_t j = 0; j < n; ++j) transpose_.offsets[j + 1] += transpose_.offsets[j];
+    transpose_.particles.resize(rows_.particles.size());
+    transpose_.values.resize(rows_.particles.size());
+    std::vector<std::size_t> next(transpose_.offsets.begin(), transpose_.offsets.end() - 1);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t e = rows_.offsets[i]; e < rows_.offsets[i + 1]; ++e) {
+        const std::size_t to = next[rows_.particles[e]]++;
+        transpose_.particles[to] = static_cast<Index>(i);
+        transpose_.values[to] = rows_.values[e];
+      }
+  }
+
+  [[nodiscard]] bool identity() const { return rows_.empty(); }
+  [[nodiscard]] const ValueRows& rows() const { return rows_; }
+
+  /// Values at the particles.
+  [[nodiscard]] Field evaluate(const Field& unknowns) const {
+    if (identity()) return unknowns;
+    Field values(unknowns.size());
+    multiply(rows_, unknowns, values, false);
+    return values;
+  }
+  /// Adds forces at the particles to the forces of the unknowns.
+  void distribute(const Field& at_particles, Field& unknowns) const {
+    if (identity()) {
+      for (std::size_t i = 0; i < unknowns.size(); ++i) unknowns[i] += at_particles[i];
+    } else {
+      multiply(transpose_, at_particles, unknowns, true);
+    }
+  }
+
+ private:
+  static void multiply(const ValueRows& rows, const Field& x, Field& y, bool add) {
+    parallel_for(y.size(), [&](std::size_t i) {
+      Vector4 sum = add ? y[i] : Vector4::Zero();
+      for (std::size_t e = rows.offsets[i]; e < rows.offsets[i + 1]; ++e) sum += rows.values[e] * x[rows.particles[e]];
+      y[i] = sum;
+    });
+  }
+  ValueRows rows_, transpose_;
+};
+
+}  // namespace tactoid

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <tactoid/core/tensor.hpp>
+
+namespace tactoid {
+
+/// One pair of a quadrature point q and a particle I: 32 bytes, read in one piece by the hot loop.
+struct alignas(32) TableEntry {
+  double gradient[3] = {0.0, 0.0, 0.0};  ///< ∇₀φ_I(X_q), or the value-based operator G_qI; 1/m
+  Index particle = 0;                    ///< I
+  float weight = 0.0F;                   ///< stabilisation weight of the pair (0: none)
+};
+
+/// Compressed rows of (particle, value) pairs: a linear map from the unknowns to values.
+struct ValueRows {
+  std::vector<std::size_t> offsets;
+  std::vector<Index> particles;
+  std::vector<double> values;
+  [[nodiscard]] bool empty() const { return offsets.empty(); }
+};
+
+/// A contiguous range of points of one region whose contributions are added by one thread.
+struct PointChunk {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  Index region = 0;
+};
+
+/// Where the weak form is sampled and how: quadrature points, their reference volumes and the flat table of
+/// gradients, built once in the reference configuration. Vectors have three components in every dimension.
+///
+/// Two kinds of tables exist. In a *value-based* table the unknown of a particle is the value there: each
+/// point has an owner, φ_I(X_q) = δ_{I,owner(q)} for point-wise terms, and `particle_values` is empty. In a
+/// *coefficient* table the unknowns are coefficients: `point_values` holds φ_I(X_q) in the order of the
+/// entries, and `particle_values` maps coefficients to the field at the particles.
+struct PointTable {
+  std::size_t particles = 0;  ///< number of unknown vectors
+  int dimension = 3;          ///< of the body
+
+  std::vector<Vector3> position;     ///< X_q, m
+  std::vector<double> volume;        ///< V_q, m³ (m² and m per unit thickness and section in 2D and 1D)
+  std::vector<Index> region;         ///< of the material at q
+  std::vector<Index> owner;          ///< particle that q belongs to (value-based), or the nearest one
+  std::vector<std::size_t> offsets;  ///< row of q: entries[offsets[q]] .. entries[offsets[q + 1] - 1]
+  std::vector<TableEntry> entries;   ///< rows are padded to an even length with entries of zero gradient
+
+  std::vector<double> point_values;  ///< φ_I(X_q) beside `entries`; empty in a value-based table
+  ValueRows particle_values;         ///< φ_J(X_I); empty in a value-based table
+
+  Field particle_position;                  ///< X_I, m
+  std::vector<double> stabilization_scale;  ///< V_q · D / Σ_J w_J |X_J − X_I|², 1/m² · m³; empty: none
+  Vector3 period = Vector3::Zero();         ///< of periodic directions, m; 0 where not periodic
+
+  std::vector<PointChunk> chunks;               ///< sorted by colour
+  std::vector<std::size_t> color_offsets;       ///< chunks of colour c: [color_offsets[c], color_offsets[c + 1])
+
+  [[nodiscard]] std::size_t points() const { return volume.size(); }
+  [[nodiscard]] std::size_t pairs() const { return entries.size(); }
+  [[nodiscard]] bool value_based() const { return point_values.empty(); }
+  [[nodiscard]] std::span<const TableEntry> row(std::size_t q) const {
+    return {entries.data() + offsets[q], offsets[q + 1] - offsets[q]};
+  }
+  /// Bytes that the table holds.
+  [[nodiscard]] std::size_t memory() const {
+    return entries.capacity() * sizeof(TableEntry) + point_values.capacity() * sizeof(double) +
+           points() * (sizeof(Vector3) + 2 * sizeof(double) + 2 * sizeof(Index) + sizeof(std::size_t)) +
+           particle_position.capacity() * sizeof(Vector4) + particle_values.values.capacity() * 12;
+  }
+};
+
+}  // namespace tactoid
