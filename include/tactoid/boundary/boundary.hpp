@@ -1,0 +1,28 @@
+#pragma once
+
+#include <concepts>
+
+#include <tactoid/core/unsatisfied.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+#include <tactoid/geometry/point_cloud.hpp>
+
+namespace tactoid {
+
+/// A force on one body: gravity, surface tension, pressure, a rigid plate.
+///
+/// `initialize` is called once, when the simulation is composed. `apply` is called once in every step: it adds
+/// forces at the particles and returns its energy; same bits for any number of threads.
+/// `stiffness_rate(body)` bounds ω² = k/m (1/s²) of the term, for the stable step; 0 if it limits nothing.
+template <class B, int D>
+concept BoundaryTerm =
+    (requires(B& b, const PointCloud<D>& cloud, const ParticleFields& fields) {
+      b.initialize(cloud, fields);
+    } || unsatisfied<"A BoundaryTerm has `void initialize(const PointCloud<D>&, const ParticleFields&)`.">) &&
+    (requires(B& b, const ParticleFields& body, double time) {
+      { b.apply(body, time) } -> std::convertible_to<TermEnergy>;
+    } || unsatisfied<"A BoundaryTerm has `TermEnergy apply(const ParticleFields& body, double time)`.">) &&
+    (requires(const B& b, const ParticleFields& body) {
+      { b.stiffness_rate(body) } -> std::convertible_to<double>;
+    } || unsatisfied<"A BoundaryTerm has `double stiffness_rate(const ParticleFields& body) const` (1/s^2).">);
+
+}  // namespace tactoid

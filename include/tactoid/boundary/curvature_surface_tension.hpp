@@ -1,0 +1,98 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <tactoid/boundary/surface_tension.hpp>
+
+namespace tactoid {
+
+/// Surface tension as a traction from the curvature, as Zeng and Li, Soft Matter 2012, 8, 5765, print it in eqn (17):
+///
+///   f_I = −σ₀ κ_I n_I a_I,       κ = ∇·n,
+///
+/// with unit normals n_I at the particles (of the sum of the area vectors around them), κ_I the surface divergence of
+/// their interpolation averaged with the shape function of I, and a_I the current nodal area. Not the gradient of
+/// an energy: net force and torque vanish with the mesh size only. The potential reported is σ₀ A, for comparison with
+/// SurfaceTension; what the forces do beyond it is reported as external power, so that a balance closes.
+/// A BoundaryTerm in 2 and 3 dimensions.
+struct CurvatureSurfaceTension {
+  double tension = 0.072e-3;                 ///< σ₀, N/m
+  PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()
+  Field normals{};                           ///< unit normals, per particle (zero inside) at the last call of apply
+  std::vector<double> areas{};               ///< current nodal areas, per particle, m²
+  std::vector<double> curvatures{};          ///< κ, per particle, 1/m
+
+  void validate() const { require_non_negative("CurvatureSurfaceTension.tension", tension, "N/m"); }
+
+  template <int D>
+    requires(D >= 2)
+  void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
+    validate();
+    integral.emplace<D>().initialize(cloud, body);
+    normals.assign(cloud.size(), Vector4::Zero());
+    areas.assign(cloud.size(), 0.0);
+    curvatures.assign(cloud.size(), 0.0);
+  }
+
+  TermEnergy apply(const ParticleFields& body, double) {
+    return integral.visit([&]<int D>(SurfaceIntegral<D>& s) { return apply_to(s, body); });
+  }
+
+  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
+    return integral.visit([&](const auto& s) { return area_stiffness_rate(s, body, tension); });
+  }
+
+ private:
+  template <int D>
+  TermEnergy apply_to(SurfaceIntegral<D>& s, const ParticleFields& body) {
+    const FacetSurface<D>& surface = s.surface;
+    for (const Index i : surface.nodes) {
+      normals[i].setZero();
+      areas[i] = curvatures[i] = 0.0;
+    }
+    TermEnergy total;
+    // The force array of the facets holds the gradient of the area here: it gives the rate of σ₀ A.
+    parallel_for(surface.facets.size(), [&](std::size_t f) {
+      s.value[f] = detail::facet_area(s, static_cast<Index>(f), body.position, s.force[f]);
+    });
+    for (Index f = 0; f < surface.facets.size(); ++f) {
+      const auto& nodes = surface.facets[f];
+      total.potential += tension * s.value[f];
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        total.external_power += tension * s.force[f][k].dot(body.velocity[nodes[k]].template head<3>());
+      for (const auto& point : s.quadrature.points) {
+        const Vector3 c = surface.tangents(f, point.local, body.position).area_vector();
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+          normals[nodes[k]].template head<3>() += point.weight * point.shape[k] * c;
+          areas[nodes[k]] += point.weight * point.shape[k] * c.norm();
+        }
+      }
+    }
+    for (const Index i : surface.nodes) normals[i].normalize();
+    for (Index f = 0; f < surface.facets.size(); ++f) {
+      const auto& nodes = surface.facets[f];
+      for (const auto& point : s.quadrature.points) {
+        const FacetTangents a = surface.tangents(f, point.local, body.position);
+        const Vector3 c = a.area_vector();
+        // ∇·n = (a_t × ĉ)·∂n/∂s + (ĉ × a_s)·∂n/∂t over |c|: the reciprocal tangents.
+        const Vector3 unit = c.normalized(), by_s = a.t.cross(unit), by_t = unit.cross(a.s);
+        const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
+        double divergence_times_area = 0.0;
+        for (std::size_t k = 0; k < nodes.size(); ++k)
+          divergence_times_area += normals[nodes[k]].template head<3>().dot(ns[k] * by_s + nt[k] * by_t);
+        for (std::size_t k = 0; k < nodes.size(); ++k)
+          curvatures[nodes[k]] += point.weight * point.shape[k] * divergence_times_area / areas[nodes[k]];
+      }
+    }
+    for (const Index i : surface.nodes) {
+      const Vector4 force = -tension * curvatures[i] * areas[i] * normals[i];
+      body.force[i] += force;
+      total.external_power += force.dot(body.velocity[i]);
+    }
+    return total;
+  }
+};
+
+}  // namespace tactoid

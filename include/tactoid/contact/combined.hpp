@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include <tactoid/contact/contact.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+
+namespace tactoid {
+
+/// A contact made of several that act on the same pair of bodies: `Combined{LigandReceptor{}, VanDerWaals{}}`.
+/// Forces and energies add up, in the order of the parts.
+template <class... Parts>
+struct Combined {
+  std::tuple<Parts...> parts;
+
+  Combined() = default;
+  explicit Combined(Parts... p)
+    requires(sizeof...(Parts) > 0)
+      : parts(std::move(p)...) {}
+
+  template <int D>
+    requires(Contact<Parts, D> && ...)
+  void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
+                  const ParticleFields& b) {
+    std::apply([&](auto&... part) { (part.initialize(cloud_a, a, cloud_b, b), ...); }, parts);
+  }
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time) {
+    TermEnergy total;
+    std::apply([&](auto&... part) { ((total += part.apply(a, b, time)), ...); }, parts);
+    return total;
+  }
+  /// Rates of the parts add up: ω² of a sum of stiffnesses is at most the sum.
+  [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
+    return std::apply([&](const auto&... part) { return (0.0 + ... + part.stiffness_rate(a, b)); }, parts);
+  }
+
+  /// The part of type `Part`, as in `contact.get<VanDerWaals>().gaps()`.
+  template <class Part>
+  [[nodiscard]] const Part& get() const {
+    return std::get<Part>(parts);
+  }
+  template <class Part>
+  [[nodiscard]] Part& get() {
+    return std::get<Part>(parts);
+  }
+};
+
+}  // namespace tactoid

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <tactoid/core/errors.hpp>
+#include <tactoid/core/tensor.hpp>
+
+namespace tactoid {
+
+/// Remembers which particles have touched a surface: those whose gap has been at or below a capture distance once.
+struct FirstTouch {
+  double capture_distance = 100e-9;  ///< gap at which a particle counts as touching, m
+  std::vector<char> touched{};       ///< per particle: 1 once it has touched
+
+  void validate() const { require_positive("FirstTouch.capture_distance", capture_distance, "m"); }
+
+  /// Particles that touch for the first time at these gaps (m, one per particle; infinity = not on the surface),
+  /// ascending.
+  std::vector<Index> update(std::span<const double> gaps) {
+    touched.resize(gaps.size(), 0);
+    std::vector<Index> first;
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+      if (touched[i] || !(gaps[i] <= capture_distance)) continue;
+      touched[i] = 1;
+      first.push_back(static_cast<Index>(i));
+    }
+    return first;
+  }
+};
+
+}  // namespace tactoid

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/tracking.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+
+namespace tactoid {
+
+/// Measures the gap between the surface particles of body A and the deformed surface of body B, for observers
+/// (spreading area, pictures) and anchoring. It forces nothing, and keeps its own tracked closest points.
+template <int D>
+class SurfaceGaps {
+ public:
+  void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
+                  const ParticleFields& b) {
+    surface_ = FacetSurface<D>(cloud_a);
+    master_ = FacetSurface<D>(cloud_b);
+    gaps_.assign(cloud_a.size(), std::numeric_limits<double>::infinity());
+    normals_.assign(cloud_a.size(), Vector4::Zero());
+    points_.resize(surface_.nodes.size());
+    tracker_ = {};
+    measure(a, b);
+  }
+
+  /// Brings gaps and normals to the present positions. Call it as often as they are needed, at best in regular
+  /// intervals.
+  std::span<const double> measure(const ParticleFields& a, const ParticleFields& b) {
+    for (std::size_t k = 0; k < points_.size(); ++k) points_[k] = a.position[surface_.nodes[k]];
+    tracker_.update(master_, points_, b.position);
+    const auto closest = tracker_.closest();
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      gaps_[surface_.nodes[k]] = closest[k].gap;
+      normals_[surface_.nodes[k]] = pad(closest[k].normal);
+    }
+    return gaps_;
+  }
+
+  /// Signed gap per particle of A, m; infinity for particles that are not on the surface.
+  [[nodiscard]] std::span<const double> gaps() const { return gaps_; }
+  /// Unit normal out of B at the closest point, per particle of A; zero for particles that are not on the surface.
+  [[nodiscard]] std::span<const Vector4> normals() const { return normals_; }
+  /// Closest points of the surface particles, in the order of `surface().nodes`.
+  [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return tracker_.closest(); }
+  [[nodiscard]] const FacetSurface<D>& surface() const { return surface_; }
+  [[nodiscard]] const FacetSurface<D>& master() const { return master_; }
+
+ private:
+  FacetSurface<D> surface_, master_;
+  ClosestPointTracker<D> tracker_;
+  Field points_;
+  std::vector<double> gaps_;
+  Field normals_;
+};
+
+}  // namespace tactoid

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <tactoid/contact/gap_law.hpp>
+#include <tactoid/contact/per_dimension.hpp>
+#include <tactoid/contact/repulsive_wall.hpp>
+#include <tactoid/contact/rigid_surface.hpp>
+#include <tactoid/contact/surface.hpp>
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+
+namespace tactoid {
+
+/// A body's facets with the force of a rigid surface at their quadrature points.
+template <int D>
+class RigidPass {
+ public:
+  void initialize(const PointCloud<D>& cloud, const ParticleFields& body, int points_per_direction) {
+    surface_ = FacetSurface<D>(cloud);
+    quadrature_ = FacetQuadrature<D>(surface_, body.reference, points_per_direction);
+    states_.resize(quadrature_.size());
+  }
+
+  /// Adds the forces on the body; `on_surface` becomes the total force on the rigid surface.
+  template <GapLaw Law, RigidSurface Surface>
+  TermEnergy apply(const Law& law, const Surface& rigid, const ParticleFields& body, double time, Vector3& on_surface) {
+    parallel_for(states_.size(), [&](std::size_t q) {
+      const Index f = quadrature_.facet_of(q);
+      const Vector4 x = surface_.interpolate(f, quadrature_.point(q).local, body.position);
+      const RigidGap g = rigid.at(x.template head<3>(), time);
+      const double area = quadrature_.area[q], pressure = area * law.traction(g.gap);
+      states_[q] = {pad(Vector3(pressure * g.normal)), area * law.potential(g.gap), pressure * g.normal.dot(g.velocity),
+                    area * law.stiffness(g.gap)};
+    });
+    on_surface.setZero();
+    TermEnergy total;
+    for (std::size_t q = 0; q < states_.size(); ++q) {
+      const State& s = states_[q];
+      total.potential += s.energy;
+      total.external_power += s.power;
+      on_surface -= s.force.template head<3>();
+      const auto& nodes = surface_.facets[quadrature_.facet_of(q)];
+      for (std::size_t k = 0; k < nodes.size(); ++k) body.force[nodes[k]] += quadrature_.point(q).shape[k] * s.force;
+    }
+    return total;
+  }
+
+  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
+    std::vector<double> sum(body.mass.size(), 0.0);
+    for (std::size_t q = 0; q < states_.size(); ++q)
+      for (std::size_t k = 0; k < quadrature_.point(q).shape.size(); ++k)
+        sum[surface_.facets[quadrature_.facet_of(q)][k]] += states_[q].stiffness * quadrature_.point(q).shape[k];
+    double rate = 0.0;
+    for (std::size_t i = 0; i < sum.size(); ++i) rate = std::max(rate, sum[i] / body.mass[i]);
+    return rate;
+  }
+
+ private:
+  struct State {
+    Vector4 force = Vector4::Zero();
+    double energy = 0.0, power = 0.0, stiffness = 0.0;
+  };
+  FacetSurface<D> surface_;
+  FacetQuadrature<D> quadrature_;
+  std::vector<State> states_;
+};
+
+/// Contact of a body with a rigid surface under any GapLaw (per reference area), a BoundaryTerm in 2 and 3 dimensions:
+/// `OnRigid{.law = LigandReceptorLaw{}, .surface = RigidSphere{…}}`. The power of a moving surface is external power.
+template <GapLaw Law = RepulsiveWall, RigidSurface Surface = RigidPlane>
+struct OnRigid {
+  Law law{};
+  Surface surface{};
+  int points_per_direction = 2;          ///< Gauss points along each side of a facet, 1 to 4
+  PerDimension<RigidPass> pass{};        ///< set by initialize()
+  Vector3 on_surface = Vector3::Zero();  ///< see force()
+
+  void validate() const {
+    law.validate();
+    surface.validate();
+  }
+  template <int D>
+    requires(D >= 2)
+  void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
+    validate();
+    pass.emplace<D>().initialize(cloud, body, points_per_direction);
+  }
+  TermEnergy apply(const ParticleFields& body, double time) {
+    return pass.visit([&](auto& p) { return p.apply(law, surface, body, time, on_surface); });
+  }
+  /// At the gaps of the last call of apply.
+  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
+    return pass.visit([&](const auto& p) { return p.stiffness_rate(body); });
+  }
+  /// Force of the body on the rigid surface at the last call of apply, N.
+  [[nodiscard]] Vector3 force() const { return on_surface; }
+};
+
+/// A rigid plate, at rest or moving steadily, that a body is pressed or stuck to: a BoundaryTerm in 2 and 3 dimensions.
+/// `RigidPlate{.point = …, .normal = …, .velocity = …}` repels; `.law = LigandReceptorLaw{…}` adheres.
+/// For another motion, or another surface: OnRigid.
+template <GapLaw Law = RepulsiveWall>
+struct RigidPlate {
+  Vector3 point = Vector3::Zero();     ///< a point of the plate at time 0, m
+  Vector3 normal = Vector3::UnitZ();   ///< toward the body
+  Vector3 velocity = Vector3::Zero();  ///< m/s
+  Law law{};                           ///< force between plate and body, per reference area of the body
+  int points_per_direction = 2;        ///< Gauss points along each side of a facet, 1 to 4
+  OnRigid<Law, RigidPlane> contact{};  ///< set by initialize()
+
+  void validate() const {
+    law.validate();
+    RigidPlane{point, normal, velocity}.validate();
+  }
+  template <int D>
+    requires(D >= 2)
+  void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
+    contact.law = law;
+    contact.surface = {point, normal, velocity};
+    contact.points_per_direction = points_per_direction;
+    contact.initialize(cloud, body);
+  }
+  TermEnergy apply(const ParticleFields& body, double time) { return contact.apply(body, time); }
+  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const { return contact.stiffness_rate(body); }
+  /// Force of the body on the plate at the last call of apply, N.
+  [[nodiscard]] Vector3 force() const { return contact.force(); }
+};
+
+}  // namespace tactoid

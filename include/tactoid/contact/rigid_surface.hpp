@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <functional>
+
+#include <tactoid/core/errors.hpp>
+#include <tactoid/core/tensor.hpp>
+#include <tactoid/core/unsatisfied.hpp>
+
+namespace tactoid {
+
+/// Where a point stands to a rigid surface.
+struct RigidGap {
+  double gap = 0.0;                    ///< signed distance, positive outside, m
+  Vector3 normal = Vector3::Zero();    ///< ∂gap/∂x, unit
+  Vector3 velocity = Vector3::Zero();  ///< of the surface there, m/s
+};
+
+/// A surface that does not deform: `RigidGap at(const Vector3& x, double time) const` tells the signed gap of a
+/// point x (m), its gradient, and the velocity of the surface; `void validate() const` throws ParameterError.
+template <class S>
+concept RigidSurface = (requires(const S& s, const Vector3& x, double time) {
+                         { s.at(x, time) } -> std::same_as<RigidGap>;
+                       } || unsatisfied<"A RigidSurface has `RigidGap at(const Vector3& x, double time) const`.">) &&
+                       (requires(const S& s) { s.validate(); } ||
+                        unsatisfied<"A RigidSurface has `void validate() const` that throws ParameterError.">);
+
+/// A plane, at rest or moving steadily. The side to which the normal points is outside.
+struct RigidPlane {
+  Vector3 point = Vector3::Zero();     ///< a point of the plane at time 0, m
+  Vector3 normal = Vector3::UnitZ();   ///< outward; its length does not matter
+  Vector3 velocity = Vector3::Zero();  ///< m/s
+
+  void validate() const {
+    for (int k = 0; k < 3; ++k) {
+      require_finite("RigidPlane.point", point[k], "m");
+      require_finite("RigidPlane.velocity", velocity[k], "m/s");
+    }
+    require_positive("length of RigidPlane.normal", normal.norm());
+  }
+  [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
+    const Vector3 n = normal.normalized();
+    return {n.dot(x - point - time * velocity), n, velocity};
+  }
+};
+
+/// A sphere (D = 2: a circle), at rest or moving steadily.
+struct RigidSphere {
+  Vector3 center = Vector3::Zero();    ///< at time 0, m
+  double radius = 1e-6;                ///< m
+  Vector3 velocity = Vector3::Zero();  ///< m/s
+
+  void validate() const {
+    for (int k = 0; k < 3; ++k) {
+      require_finite("RigidSphere.center", center[k], "m");
+      require_finite("RigidSphere.velocity", velocity[k], "m/s");
+    }
+    require_positive("RigidSphere.radius", radius, "m");
+  }
+  [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
+    const Vector3 r = x - center - time * velocity;
+    const double distance = r.norm();
+    return {distance - radius, distance > 0.0 ? Vector3(r / distance) : Vector3(Vector3::UnitZ()), velocity};
+  }
+};
+
+/// Moves a rigid surface along a prescribed path: displacement (m) and velocity (m/s) as functions of the time (s).
+/// The velocity must be the derivative of the displacement, or the energy balance does not close.
+template <RigidSurface S>
+struct Moving {
+  S surface{};
+  std::function<Vector3(double)> displacement;
+  std::function<Vector3(double)> velocity;
+
+  void validate() const {
+    surface.validate();
+    if (!displacement || !velocity)
+      throw ParameterError("Moving.displacement and Moving.velocity must both be given, as functions of the time.");
+  }
+  [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
+    RigidGap g = surface.at(x - displacement(time), time);
+    g.velocity += velocity(time);
+    return g;
+  }
+};
+
+}  // namespace tactoid

@@ -1,0 +1,240 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <tactoid/core/errors.hpp>
+#include <tactoid/core/tensor.hpp>
+#include <tactoid/geometry/point_cloud.hpp>
+
+namespace tactoid {
+
+/// Marks "no facet", as beyond the rim of an open surface.
+inline constexpr Index no_facet = ~Index{0};
+
+/// Tangents of a facet at a point: ∂x/∂s and ∂x/∂t for s, t ∈ [0, 1]. In two dimensions ∂x/∂t is the unit vector
+/// out of the plane, so that the same cross product gives the outward normal and the length element.
+struct FacetTangents {
+  Vector3 s, t;
+  /// ∂x/∂s × ∂x/∂t: outward, its length is the surface element da/(ds dt), m² (D = 2: m).
+  [[nodiscard]] Vector3 area_vector() const { return s.cross(t); }
+};
+
+/// The boundary of a body as facets: segments (D = 2) or bilinear quadrilaterals (D = 3), with who touches whom.
+/// The facets of a cloud never change; positions are handed in with each call, one per particle of the body, so
+/// the same object serves the reference and every deformed configuration.
+template <int D>
+struct FacetSurface {
+  static_assert(D == 2 || D == 3, "Surfaces exist in 2 and 3 dimensions.");
+  static constexpr int dimension = D;
+  static constexpr std::size_t corners = 1u << (D - 1);  ///< nodes of a facet
+  static constexpr std::size_t sides = D == 2 ? 2 : 4;   ///< end points (D = 2) or edges (D = 3)
+  using Facet = typename PointCloud<D>::Facet;
+  using Local = std::array<double, static_cast<std::size_t>(D - 1)>;  ///< (s) or (s, t), each in [0, 1]
+  using Shape = std::array<double, corners>;
+
+  std::vector<Facet> facets;       ///< nodes of each facet, in the order of PointCloud
+  std::vector<Index> nodes;        ///< particles on the surface, ascending
+  std::vector<Index> ring_start;   ///< per particle: where its facets start in `ring` (one entry more than particles)
+  std::vector<Index> ring;         ///< facets around each particle, ascending
+  std::vector<double> nodal_area;  ///< per particle: reference area ∫ N_I dA, m² (D = 2: m); 0 inside the body
+  std::vector<std::array<Index, sides>> side_neighbors;  ///< per facet: who shares its sides, or no_facet
+  bool closed = false;                                   ///< every edge has a facet on both sides
+
+  FacetSurface() = default;
+
+  /// Throws GeometryError for a cloud without facets, or with periodic directions (its facets would wrap around).
+  explicit FacetSurface(const PointCloud<D>& cloud) : facets(cloud.facets) {
+    if (facets.empty())
+      throw GeometryError("The cloud has no surface facets: contact and surface terms need PointCloud.facets.");
+    if ((cloud.period.array() > 0.0).any())
+      throw GeometryError("Contact and surface terms do not support clouds with periodic directions.");
+    build_rings(cloud.size());
+    nodal_area.assign(cloud.size(), 0.0);
+    Field reference(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) reference[i] = pad(cloud.positions[i]);
+    const double g = 0.5 / std::sqrt(3.0);
+    for (Index f = 0; f < facets.size(); ++f)
+      for (const double s : {0.5 - g, 0.5 + g})
+        for (const double t : {0.5 - g, 0.5 + g}) {
+          const Local local = make_local(s, t);
+          const double area = 0.25 * tangents(f, local, reference).area_vector().norm();
+          const Shape shape_values = shape(local);
+          for (std::size_t a = 0; a < corners; ++a) nodal_area[facets[f][a]] += area * shape_values[a];
+        }
+  }
+
+  [[nodiscard]] static Local make_local(double s, [[maybe_unused]] double t) {
+    if constexpr (D == 2)
+      return {s};
+    else
+      return {s, t};
+  }
+
+  /// Shape functions N_a(s, t) of the facet's nodes; they sum to 1.
+  [[nodiscard]] static Shape shape(const Local& l) {
+    if constexpr (D == 2)
+      return {1.0 - l[0], l[0]};
+    else
+      return {(1.0 - l[0]) * (1.0 - l[1]), l[0] * (1.0 - l[1]), (1.0 - l[0]) * l[1], l[0] * l[1]};
+  }
+  /// ∂N_a/∂s and ∂N_a/∂t (the latter zero for D = 2).
+  [[nodiscard]] static Shape shape_s(const Local& l) {
+    if constexpr (D == 2)
+      return {-1.0, 1.0};
+    else
+      return {-(1.0 - l[1]), 1.0 - l[1], -l[1], l[1]};
+  }
+  [[nodiscard]] static Shape shape_t(const Local& l) {
+    if constexpr (D == 2)
+      return {0.0, 0.0};
+    else
+      return {-(1.0 - l[0]), -l[0], 1.0 - l[0], l[0]};
+  }
+
+  /// A nodal field at a point of a facet: Σ N_a v_a.
+  [[nodiscard]] Vector4 interpolate(Index facet, const Local& local, std::span<const Vector4> values) const {
+    const Shape n = shape(local);
+    Vector4 v = n[0] * values[facets[facet][0]];
+    for (std::size_t a = 1; a < corners; ++a) v += n[a] * values[facets[facet][a]];
+    return v;
+  }
+
+  [[nodiscard]] FacetTangents tangents(Index facet, const Local& local, std::span<const Vector4> x) const {
+    const Facet& c = facets[facet];
+    if constexpr (D == 2) {
+      return {Vector3((x[c[1]] - x[c[0]]).template head<3>()), Vector3::UnitZ()};
+    } else {
+      const Vector4 along_s = (1.0 - local[1]) * (x[c[1]] - x[c[0]]) + local[1] * (x[c[3]] - x[c[2]]);
+      const Vector4 along_t = (1.0 - local[0]) * (x[c[2]] - x[c[0]]) + local[0] * (x[c[3]] - x[c[1]]);
+      return {Vector3(along_s.template head<3>()), Vector3(along_t.template head<3>())};
+    }
+  }
+
+  /// Unit outward normal at a point of a facet.
+  [[nodiscard]] Vector3 normal(Index facet, const Local& local, std::span<const Vector4> x) const {
+    return tangents(facet, local, x).area_vector().normalized();
+  }
+
+  /// Facets around particle `node`.
+  [[nodiscard]] std::span<const Index> facets_of(Index node) const {
+    return {ring.data() + ring_start[node], ring.data() + ring_start[node + 1]};
+  }
+
+  /// Corners at the two ends of side `k`. Sides of a quadrilateral: t = 0, t = 1, s = 0, s = 1; a side of a segment is
+  /// one of its end points.
+  [[nodiscard]] static constexpr std::array<std::size_t, 2> side_corners(std::size_t k) {
+    if constexpr (D == 2) return {k, k};
+    constexpr std::array<std::array<std::size_t, 2>, 4> of = {{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
+    return of[k];
+  }
+
+  /// The facets that share a side with facet `f`: no_facet where there is none.
+  [[nodiscard]] const std::array<Index, sides>& neighbors_of(Index f) const { return side_neighbors[f]; }
+
+  /// The facet on the other side of the edge a–b of `facet`; no_facet at the rim of an open surface (D = 3).
+  [[nodiscard]] Index across(Index facet, Index a, Index b) const {
+    for (const Index f : facets_of(a))
+      if (f != facet && std::find(facets[f].begin(), facets[f].end(), b) != facets[f].end()) return f;
+    return no_facet;
+  }
+
+ private:
+  void build_rings(std::size_t particles) {
+    ring_start.assign(particles + 1, 0);
+    for (const Facet& f : facets)
+      for (const Index n : f) {
+        if (n >= particles)
+          throw GeometryError("A surface facet names particle " + std::to_string(n) + ", but the cloud has only " +
+                              std::to_string(particles) + ".");
+        ++ring_start[n + 1];
+      }
+    for (std::size_t i = 0; i < particles; ++i) {
+      if (ring_start[i + 1] > 0) nodes.push_back(static_cast<Index>(i));
+      ring_start[i + 1] += ring_start[i];
+    }
+    ring.resize(ring_start.back());
+    std::vector<Index> next(ring_start.begin(), ring_start.end() - 1);
+    for (Index f = 0; f < facets.size(); ++f)
+      for (const Index n : facets[f]) ring[next[n]++] = f;
+    closed = true;
+    side_neighbors.resize(facets.size());
+    for (Index f = 0; f < facets.size(); ++f)
+      for (std::size_t k = 0; k < sides; ++k) {
+        const auto [a, b] = side_corners(k);
+        side_neighbors[f][k] = across(f, facets[f][a], facets[f][b]);
+        closed = closed && side_neighbors[f][k] != no_facet;
+      }
+  }
+};
+
+/// Gauss points on the facets of a surface, with weights of the reference configuration.
+template <int D>
+struct FacetQuadrature {
+  using Local = typename FacetSurface<D>::Local;
+  struct FacetPoint {
+    Local local;                            ///< where on the facet
+    typename FacetSurface<D>::Shape shape;  ///< N_a there
+    double weight;                          ///< Gauss weight on the unit facet (they sum to 1)
+  };
+  std::vector<FacetPoint> points;  ///< the same on every facet
+  std::vector<double> area;        ///< per facet and point (facet-major): reference area it stands for, m² (D = 2: m)
+
+  FacetQuadrature() = default;
+
+  /// `per_direction` Gauss points along each side, 1 to 4. Throws ParameterError outside of that.
+  FacetQuadrature(const FacetSurface<D>& surface, std::span<const Vector4> reference, int per_direction) {
+    const auto [x, w] = rule(per_direction);
+    const std::size_t n = static_cast<std::size_t>(per_direction);
+    for (std::size_t j = 0; j < (D == 2 ? 1 : n); ++j)
+      for (std::size_t i = 0; i < n; ++i) {
+        const Local local = FacetSurface<D>::make_local(x[i], x[j]);
+        points.push_back({local, FacetSurface<D>::shape(local), w[i] * (D == 2 ? 1.0 : w[j])});
+      }
+    area.resize(surface.facets.size() * points.size());
+    for (Index f = 0; f < surface.facets.size(); ++f)
+      for (std::size_t q = 0; q < points.size(); ++q)
+        area[f * points.size() + q] =
+            points[q].weight * surface.tangents(f, points[q].local, reference).area_vector().norm();
+  }
+
+  [[nodiscard]] std::size_t size() const { return area.size(); }
+  [[nodiscard]] Index facet_of(std::size_t q) const { return static_cast<Index>(q / points.size()); }
+  [[nodiscard]] const FacetPoint& point(std::size_t q) const { return points[q % points.size()]; }
+
+ private:
+  struct Rule {
+    std::array<double, 4> x, w;
+  };
+  static Rule rule(int n) {
+    switch (n) {
+      case 1:
+        return {{0.5}, {1.0}};
+      case 2: {
+        const double a = 0.5 / std::sqrt(3.0);
+        return {{0.5 - a, 0.5 + a}, {0.5, 0.5}};
+      }
+      case 3: {
+        const double a = 0.5 * std::sqrt(0.6);
+        return {{0.5 - a, 0.5, 0.5 + a}, {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0}};
+      }
+      case 4: {
+        const double r = 2.0 * std::sqrt(1.2), a = 0.5 * std::sqrt((3.0 - r) / 7.0),
+                     b = 0.5 * std::sqrt((3.0 + r) / 7.0);
+        const double s = std::sqrt(30.0), wa = (18.0 + s) / 72.0, wb = (18.0 - s) / 72.0;
+        return {{0.5 - b, 0.5 - a, 0.5 + a, 0.5 + b}, {wb, wa, wa, wb}};
+      }
+      default:
+        reject("points_per_direction", n, "", "1, 2, 3 or 4");
+    }
+  }
+};
+
+}  // namespace tactoid

@@ -1,0 +1,194 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <tactoid/contact/gap_law.hpp>
+#include <tactoid/contact/per_dimension.hpp>
+#include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/tracking.hpp>
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+
+namespace tactoid {
+
+/// The area that a traction acts on.
+enum class ContactArea {
+  reference,  ///< per reference area: the force is exactly the gradient of the energy Σ A_q Φ(gap_q)
+  current     ///< per current area (Nanson): a traction, not a gradient; the energy Σ a_q Φ changes also with
+              ///< the area a_q, and that power, Σ ȧ_q Φ, is reported as external power
+};
+
+/// One side of a contact: the quadrature points on the facets of one body (the slave) against the facets of the
+/// other (the master). The force f = A_q t(g) n at a point is handed to the slave's nodes by its facet's shape
+/// functions, its opposite to the master's nodes by the shape functions at the closest point; since g is
+/// stationary in the closest point, this is the exact gradient of A_q Φ(g) in the positions of both bodies.
+template <int D>
+class ContactPass {
+ public:
+  void initialize(const PointCloud<D>& slave_cloud, const ParticleFields& slave, const PointCloud<D>& master_cloud,
+                  const ParticleFields& master, int points_per_direction, double reach) {
+    slave_ = FacetSurface<D>(slave_cloud);
+    master_ = FacetSurface<D>(master_cloud);
+    quadrature_ = FacetQuadrature<D>(slave_, slave.reference, points_per_direction);
+    points_.resize(quadrature_.size());
+    states_.resize(quadrature_.size());
+    locate(slave);
+    tracker_.search(master_, points_, master.position, reach);
+  }
+
+  /// Adds the forces of `law`, times `factor`, to both bodies.
+  template <GapLaw Law>
+  TermEnergy apply(const Law& law, const ParticleFields& slave, const ParticleFields& master, ContactArea area,
+                   double factor) {
+    locate(slave);
+    tracker_.update(master_, points_, master.position, law.reach());
+    const auto closest = tracker_.closest();
+    parallel_for(points_.size(), [&](std::size_t q) {
+      State& s = states_[q];
+      const double gap = closest[q].gap;
+      s = {};
+      if (gap >= law.reach()) return;
+      const double density = law.potential(gap);
+      double a = quadrature_.area[q];
+      if (area == ContactArea::current) {
+        const auto& p = quadrature_.point(q);
+        const FacetTangents x = slave_.tangents(quadrature_.facet_of(q), p.local, slave.position);
+        FacetTangents v = slave_.tangents(quadrature_.facet_of(q), p.local, slave.velocity);
+        if constexpr (D == 2) v.t.setZero();
+        const Vector3 normal = x.area_vector();
+        a = p.weight * normal.norm();
+        s.area_power = factor * p.weight * density * normal.normalized().dot(v.s.cross(x.t) + x.s.cross(v.t));
+      }
+      s.force = factor * a * law.traction(gap);
+      s.energy = factor * a * density;
+    });
+    TermEnergy total;
+    for (std::size_t q = 0; q < points_.size(); ++q) {
+      const State& s = states_[q];
+      total.potential += s.energy;
+      total.external_power += s.area_power;
+      if (s.force == 0.0) continue;
+      const Vector4 force = pad(Vector3(s.force * closest[q].normal));
+      const auto& from = slave_.facets[quadrature_.facet_of(q)];
+      const auto& onto = master_.facets[closest[q].facet];
+      const auto& n = quadrature_.point(q).shape;
+      const auto m = FacetSurface<D>::shape(closest[q].local);
+      for (std::size_t k = 0; k < from.size(); ++k) {
+        slave.force[from[k]] += n[k] * force;
+        master.force[onto[k]] -= m[k] * force;
+      }
+    }
+    return total;
+  }
+
+  /// Row sums of the stiffness (N/m) at the gaps of the last step, added per particle: Gershgorin's bound of
+  /// ω² is their largest ratio to the mass. The turning of the normal around edges and corners is left out: it is
+  /// confined to where they are closest.
+  template <GapLaw Law>
+  void add_stiffness(const Law& law, double factor, std::vector<double>& slave, std::vector<double>& master) const {
+    const auto closest = tracker_.closest();
+    for (std::size_t q = 0; q < points_.size(); ++q) {
+      const double gap = closest[q].gap;
+      if (!(gap < law.reach())) continue;
+      const double k = 2.0 * factor * quadrature_.area[q] * law.stiffness(gap);
+      const auto& from = slave_.facets[quadrature_.facet_of(q)];
+      const auto& onto = master_.facets[closest[q].facet];
+      const auto& n = quadrature_.point(q).shape;
+      const auto m = FacetSurface<D>::shape(closest[q].local);
+      for (std::size_t c = 0; c < from.size(); ++c) {
+        slave[from[c]] += k * n[c];
+        master[onto[c]] += k * m[c];
+      }
+    }
+  }
+
+  /// Closest points of the slave's quadrature points, facet by facet.
+  [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return tracker_.closest(); }
+  [[nodiscard]] const FacetSurface<D>& slave() const { return slave_; }
+  [[nodiscard]] const FacetSurface<D>& master() const { return master_; }
+  [[nodiscard]] const FacetQuadrature<D>& quadrature() const { return quadrature_; }
+
+ private:
+  struct State {
+    double force = 0.0, energy = 0.0, area_power = 0.0;
+  };
+  void locate(const ParticleFields& slave) {
+    parallel_for(points_.size(), [&](std::size_t q) {
+      points_[q] = slave_.interpolate(quadrature_.facet_of(q), quadrature_.point(q).local, slave.position);
+    });
+  }
+
+  FacetSurface<D> slave_, master_;
+  FacetQuadrature<D> quadrature_;
+  ClosestPointTracker<D> tracker_;
+  Field points_;
+  std::vector<State> states_;
+};
+
+/// The passes of a contact: body A's facets against B's, and, if asked, B's against A's with half the weight each.
+class SurfaceContactEngine {
+ public:
+  template <int D, GapLaw Law>
+  void initialize(const Law& law, const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
+                  const ParticleFields& b, int points_per_direction, bool two_pass) {
+    law.validate();
+    forth_.emplace<D>().initialize(cloud_a, a, cloud_b, b, points_per_direction, law.reach());
+    back_ = {};
+    if (two_pass) back_.emplace<D>().initialize(cloud_b, b, cloud_a, a, points_per_direction, law.reach());
+  }
+
+  template <GapLaw Law>
+  TermEnergy apply(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area) {
+    const double factor = back_.empty() ? 1.0 : 0.5;
+    TermEnergy total = forth_.visit([&](auto& pass) { return pass.apply(law, a, b, area, factor); });
+    if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.apply(law, b, a, area, factor); });
+    return total;
+  }
+
+  template <GapLaw Law>
+  double stiffness_rate(const Law& law, const ParticleFields& a, const ParticleFields& b) const {
+    const double factor = back_.empty() ? 1.0 : 0.5;
+    std::vector<double> sum_a(a.mass.size(), 0.0), sum_b(b.mass.size(), 0.0);
+    forth_.visit([&](const auto& pass) { pass.add_stiffness(law, factor, sum_a, sum_b); });
+    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.add_stiffness(law, factor, sum_b, sum_a); });
+    double rate = 0.0;
+    for (std::size_t i = 0; i < sum_a.size(); ++i) rate = std::max(rate, sum_a[i] / a.mass[i]);
+    for (std::size_t i = 0; i < sum_b.size(); ++i) rate = std::max(rate, sum_b[i] / b.mass[i]);
+    return rate;
+  }
+
+  /// The pass of A's facets: closest points, quadrature, surfaces, as f(const ContactPass<D>&).
+  template <class F>
+  decltype(auto) visit(F&& f) const {
+    return forth_.visit(std::forward<F>(f));
+  }
+
+ private:
+  PerDimension<ContactPass> forth_, back_;
+};
+
+/// A Contact in 2 and 3 dimensions from any GapLaw: `SurfaceContact{.law = MyLaw{…}}`.
+template <GapLaw Law>
+struct SurfaceContact {
+  Law law{};
+  ContactArea area = ContactArea::reference;  ///< what the law's traction is per
+  bool two_pass = false;                      ///< both bodies' facets are sampled, with half the weight each
+  int points_per_direction = 2;               ///< Gauss points along each side of a facet, 1 to 4
+  SurfaceContactEngine engine{};              ///< set by initialize()
+
+  template <int D>
+    requires(D >= 2)
+  void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
+                  const ParticleFields& b) {
+    engine.initialize<D>(law, cloud_a, a, cloud_b, b, points_per_direction, two_pass);
+  }
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) { return engine.apply(law, a, b, area); }
+  [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
+    return engine.stiffness_rate(law, a, b);
+  }
+};
+
+}  // namespace tactoid
