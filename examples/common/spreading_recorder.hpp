@@ -1,0 +1,117 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <tactoid/tactoid.hpp>
+
+namespace tactoid {
+
+/// Observes a simulation of a cell (body 0) on a substrate (body 1) and writes, in a folder, history.csv, the frames for
+/// ParaView (fields.pvd) and summary.json.
+class SpreadingRecorder {
+ public:
+  /// `cutoff`: gap below which the surface counts as spread, m.
+  SpreadingRecorder(std::filesystem::path folder, double cutoff)
+      : folder_(std::move(folder)), cutoff_(cutoff), history_(folder_ / "history.csv", columns()), series_(folder_ / "fields.pvd") {
+    std::filesystem::create_directories(folder_ / "fields");
+  }
+
+  static std::vector<std::string> columns() {
+    return {"time", "dt", "spread_area", "contact_radius", "front_modulation", "nucleus_effective_stress_mean",
+            "nucleus_effective_stress_max", "cell_effective_stress_max", "com_x", "com_y", "com_z", "contact_x", "contact_y",
+            "kinetic_energy", "strain_energy", "adhesion_energy", "surface_energy", "dissipated_energy", "external_work",
+            "energy_error", "momentum_x", "momentum_y", "momentum_z", "stabilization_energy", "gap_min"};
+  }
+
+  /// One line of the history.
+  template <class S>
+  void record(S& simulation) {
+    const Timer timer(seconds_);
+    measure(simulation);
+    const ParticleFields cell = simulation.template particles<0>(), substrate = simulation.template particles<1>();
+    const StressFields stress = stress_fields(simulation.template body<0>());
+    const PointTable& table = simulation.template body<0>().table();
+    const RegionStatistics nucleus = region_statistics(table, stress.point_effective_stress, 0);
+    double largest = 0.0;
+    for (double s : stress.point_effective_stress) largest = std::max(largest, s);
+    const ContactFront front = contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_);
+    const Motion a = motion(cell), b = motion(substrate);
+    const Vector3 momentum = a.momentum + b.momentum;
+    const EnergyLedger& e = simulation.ledger();
+    double smallest = std::numeric_limits<double>::infinity();
+    for (double g : gaps_.gaps()) smallest = std::min(smallest, g);
+    last_ = {simulation.time(), simulation.last_time_step(), front.area, front.radius, front.modulation, nucleus.mean, nucleus.max,
+             largest, a.center_of_mass[0], a.center_of_mass[1], a.center_of_mass[2], front.centroid[0], front.centroid[1],
+             e.kinetic, e.strain + e.stabilization, e.adhesion, e.surface, e.dissipated, e.external_work, e.error(),
+             momentum[0], momentum[1], momentum[2], e.stabilization, smallest};
+    history_.write(last_);
+  }
+
+  /// One frame: both bodies.
+  template <class S>
+  void write_frame(S& simulation) {
+    const Timer timer(seconds_);
+    measure(simulation);
+    const std::string number = fmt::format("{:04d}", frame_++);
+    write<0>(simulation, "cell_" + number + ".vtu", gaps_.gaps());
+    write<1>(simulation, "substrate_" + number + ".vtu", {});
+  }
+
+  /// The final values under the names of the history, and what the run took.
+  template <class S>
+  void write_summary(S& simulation, double wall_seconds) const {
+    Summary summary;
+    const std::vector<std::string> names = columns();
+    for (std::size_t i = 0; i < names.size(); ++i) summary.set(names[i], last_[i]);
+    summary.set("steps", simulation.steps());
+    summary.set("wall_seconds", wall_seconds);
+    summary.set("particles_cell", simulation.template body<0>().size());
+    summary.set("particles_substrate", simulation.template body<1>().size());
+    summary.set("pairs", simulation.pairs());
+    const double visits = static_cast<double>(simulation.steps()) * static_cast<double>(simulation.pairs());
+    summary.set("ns_per_pair", visits > 0.0 ? 1e9 * (wall_seconds - seconds_) / visits : 0.0);
+    summary.set("threads", thread_count());
+    summary.set("version", version);
+    summary.write(folder_ / "summary.json");
+  }
+
+ private:
+  struct Timer {
+    explicit Timer(double& sum) : sum_(sum) {}
+    ~Timer() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    Timer(const Timer&) = delete;
+    Timer& operator=(const Timer&) = delete;
+    double& sum_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  };
+
+  template <class S>
+  void measure(S& simulation) {
+    const ParticleFields cell = simulation.template particles<0>(), substrate = simulation.template particles<1>();
+    if (gaps_.gaps().empty())
+      gaps_.initialize(simulation.template body<0>().cloud(), cell, simulation.template body<1>().cloud(), substrate);
+    else
+      gaps_.measure(cell, substrate);
+  }
+
+  template <std::size_t B, class S>
+  void write(S& simulation, const std::string& name, std::span<const double> gaps) {
+    auto& body = simulation.template body<B>();
+    write_body_frame(folder_ / "fields" / name, body, simulation.template particles<B>(), stress_fields(body), simulation.time(), gaps);
+    series_.add(simulation.time(), "fields/" + name, body.name());
+  }
+
+  std::filesystem::path folder_;
+  double cutoff_;
+  HistoryWriter history_;
+  PvdSeries series_;
+  SurfaceGaps<3> gaps_;
+  std::vector<double> last_;
+  int frame_ = 0;
+  double seconds_ = 0.0;  // spent in observing and writing
+};
+
+}  // namespace tactoid

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactoid/core/errors.hpp>
+#include <tactoid/output/file.hpp>
+
+namespace tactoid {
+
+/// A table of numbers over time (.csv): a line of column names, then one line per call, each on the disc before the
+/// call returns. Numbers are written in the shortest form that reads back as the same double.
+class HistoryWriter {
+ public:
+  /// Begins the file anew. Throws FileError; ParameterError for a column without a name, with a comma, or named twice.
+  HistoryWriter(std::filesystem::path path, std::vector<std::string> columns)
+      : path_(std::move(path)), columns_(std::move(columns)) {
+    std::string head;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const std::string& name = columns_[i];
+      if (name.empty() || name.find_first_of(",\"\n\r") != std::string::npos)
+        throw ParameterError(fmt::format("HistoryWriter: {} is not allowed as the name of a column.", in_quotes(name)));
+      for (std::size_t j = 0; j < i; ++j)
+        if (columns_[j] == name)
+          throw ParameterError(fmt::format("HistoryWriter: two columns have the name {}.", in_quotes(name)));
+      head += (i == 0 ? "" : ",") + name;
+    }
+    file_.reset(std::fopen(path_.c_str(), "wb"));
+    if (!file_) detail::fail_file("write", path_, errno);
+    put(head + '\n');
+  }
+
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+
+  /// Writes one line: one value per column. Throws ParameterError for another count, FileError.
+  void write(std::span<const double> values) {
+    if (values.size() != columns_.size()) {
+      throw ParameterError(fmt::format("HistoryWriter: {} values were given for the {} columns of {}.", values.size(),
+                                       columns_.size(), in_quotes(path_.string())));
+    }
+    std::string line;
+    for (std::size_t i = 0; i < values.size(); ++i) line += fmt::format("{}{}", i == 0 ? "" : ",", values[i]);
+    put(line + '\n');
+  }
+
+ private:
+  void put(const std::string& line) {
+    if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size() || std::fflush(file_.get()) != 0)
+      detail::fail_file("write", path_, errno);
+  }
+
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::filesystem::path path_;
+  std::vector<std::string> columns_;
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+}  // namespace tactoid

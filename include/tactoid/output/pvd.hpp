@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactoid/output/file.hpp>
+
+namespace tactoid {
+
+/// A series of grids in time (.pvd), which ParaView opens as one. The file is written anew, whole, after each grid, so
+/// that an interrupted run can be read up to its last frame.
+class PvdSeries {
+ public:
+  explicit PvdSeries(std::filesystem::path path) : path_(std::move(path)) {}
+
+  /// Adds the grid `file`, a path relative to the folder of the series, at `time` (s). Grids of the same time with
+  /// different names of `part` are the parts of one picture. Throws FileError.
+  void add(double time, std::string_view file, std::string_view part = "") {
+    const std::size_t before = entries_.size();
+    entries_ += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", time, part_number(time),
+                            escaped(part), escaped(file));
+    try {
+      write_file(path_, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
+                            entries_ + "</Collection>\n</VTKFile>\n");
+    } catch (...) {
+      entries_.resize(before);
+      throw;
+    }
+  }
+
+ private:
+  int part_number(double time) {
+    part_ = time == last_time_ && !entries_.empty() ? part_ + 1 : 0;
+    last_time_ = time;
+    return part_;
+  }
+  static std::string escaped(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+      if (c == '&')
+        result += "&amp;";
+      else if (c == '<')
+        result += "&lt;";
+      else if (c == '"')
+        result += "&quot;";
+      else
+        result += c;
+    }
+    return result;
+  }
+
+  std::filesystem::path path_;
+  std::string entries_;
+  double last_time_ = 0.0;
+  int part_ = 0;
+};
+
+}  // namespace tactoid

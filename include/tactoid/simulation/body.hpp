@@ -1,0 +1,445 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactoid/core/errors.hpp>
+#include <tactoid/director/all.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+#include <tactoid/geometry/point_cloud.hpp>
+#include <tactoid/geometry/validate.hpp>
+#include <tactoid/kernel/kernel.hpp>
+#include <tactoid/kinematics/kinematics.hpp>
+#include <tactoid/quadrature/coloring.hpp>
+#include <tactoid/quadrature/quadrature.hpp>
+#include <tactoid/quadrature/particle_values.hpp>
+#include <tactoid/simulation/region_laws.hpp>
+#include <tactoid/simulation/row_operations.hpp>
+
+namespace tactoid {
+
+/// A body without a director field.
+struct NoDirector {
+  void validate() const {}
+};
+
+/// Energies and powers of a body at one instant, in J and W.
+struct BodyTotals {
+  double strain_energy = 0.0;         ///< of the laws
+  double stabilization_energy = 0.0;  ///< of the quadrature's stabilisation
+  double dissipated_power = 0.0;      ///< of the laws, and of the damping of the stabilisation
+  double active_power = 0.0;          ///< given to the motion by stresses without an energy
+  BodyTotals& operator+=(const BodyTotals& other) {
+    strain_energy += other.strain_energy;
+    stabilization_energy += other.stabilization_energy;
+    dissipated_power += other.dissipated_power;
+    active_power += other.active_power;
+    return *this;
+  }
+};
+
+/// Cauchy stress and volume ratio at a quadrature point.
+struct PointSample {
+  Tensor3 cauchy;
+  double J = 1.0;
+};
+
+/// A deformable body: a point cloud, the kernel and the quadrature that sample it, a law for each of its regions,
+/// and, where a law needs one, a director field. Holds the state that an integrator advances.
+///
+///   Body cell{"cell", ball({...}), Rkpm<3>{}, NodalCentroids{}, Materials{Region{"nucleus", ...}, ...},
+///             DirectorField{...}, initial_director};
+///
+/// The laws are matched to the regions of the cloud by name. Throws ParameterError for a parameter out of range or
+/// a region without a law, and GeometryError for a cloud that the kernel cannot sample.
+template <Kernel KernelType, Quadrature<KernelType> QuadratureType, class MaterialsType, class Director = NoDirector>
+class Body;
+
+template <Kernel KernelType, Quadrature<KernelType> QuadratureType, class... Ms, class Director>
+class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
+ public:
+  static constexpr int dimension = KernelType::dimension;
+  static constexpr bool has_director = !std::is_same_v<Director, NoDirector>;
+  static_assert(has_director || !(uses_director<LawOf<Ms>> || ...),
+                "A material of this body needs a director: give the Body a DirectorField and an initial director.");
+
+  Body(std::string name, PointCloud<dimension> cloud, KernelType kernel, QuadratureType quadrature, Materials<Ms...> materials)
+    requires(!has_director)
+      : Body(std::move(name), std::move(cloud), kernel, quadrature, std::move(materials), Director{}, NoDirector{}) {}
+
+  /// `initial` gives the director at the start: a function of the reference position, or a Field over the particles.
+  template <class Initial>
+  Body(std::string name, PointCloud<dimension> cloud, KernelType kernel, QuadratureType quadrature, Materials<Ms...> materials,
+       Director director_law, const Initial& initial)
+      : name_(std::move(name)), cloud_(std::move(cloud)), kernel_(kernel), quadrature_(quadrature), director_law_(director_law) {
+    tactoid::validate(cloud_);
+    kernel_.validate();
+    director_law_.validate();
+    table_ = quadrature_.build(cloud_, kernel_);
+    if (has_director && !table_.value_based())
+      throw ParameterError("Body \"" + name_ + "\": a director field needs a value-based quadrature, such as NodalCentroids.");
+    match_regions(materials, std::index_sequence_for<Ms...>{});
+    particle_values_ = ParticleValues(table_.particle_values);
+    assemble_masses();
+    const std::size_t n = table_.particles;
+    displacement.assign(n, Vector4::Zero());
+    velocity.assign(n, Vector4::Zero());
+    force.assign(n, Vector4::Zero());
+    chunk_totals_.resize(table_.chunks.size());
+    chunk_stretch_.resize(table_.chunks.size());
+    chunk_failure_.resize(table_.chunks.size());
+    if constexpr (has_director) {
+      if constexpr (std::is_same_v<Initial, Field>) this->director = initial;
+      else this->director = initial_director(cloud_, initial);
+      if (this->director.size() != n)
+        throw ParameterError(fmt::format("Body \"{}\": the initial director has {} vectors, the cloud has {} particles.",
+                                         name_, this->director.size(), n));
+      director_flux.assign(n, Vector4::Zero());
+      point_rate_.assign(table_.points(), Tensor3::Zero());
+      point_volume_ratio_.assign(table_.points(), 1.0);
+      points_of_particle_.assign(n, {});
+      for (Index q = 0; q < table_.points(); ++q) points_of_particle_[table_.owner[q]].push_back(q);
+    }
+    point_scale_ = wave_numbers();
+  }
+
+  // --- state -------------------------------------------------------------------------------------------------
+  Field displacement;   ///< unknowns u_I (values at the particles, or coefficients), m
+  Field velocity;       ///< their rates at the middle of the last step, m/s
+  Field force;          ///< forces conjugate to the unknowns, N
+  Field director;       ///< h_I; empty without a director field
+  Field director_flux;  ///< −Σ_q V_q J (∇₀h C⁻¹) G_qI, m; the diffusion of the director
+  std::vector<char> anchored;  ///< 1 where the director is held (anchoring); empty or one per particle
+
+  // --- parts -------------------------------------------------------------------------------------------------
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const PointCloud<dimension>& cloud() const { return cloud_; }
+  [[nodiscard]] const KernelType& kernel() const { return kernel_; }
+  [[nodiscard]] const QuadratureType& quadrature() const { return quadrature_; }
+  [[nodiscard]] const PointTable& table() const { return table_; }
+  [[nodiscard]] const Director& director_law() const { return director_law_; }
+  [[nodiscard]] const std::vector<double>& masses() const { return masses_; }            ///< lumped, kg
+  [[nodiscard]] const std::vector<double>& nodal_volumes() const { return volumes_; }    ///< reference, m³
+  [[nodiscard]] const ParticleValues& particle_values() const { return particle_values_; }
+  [[nodiscard]] std::size_t size() const { return table_.particles; }
+
+  /// Calls f(RegionLaw&, index of the region) for every region.
+  template <class F>
+  void for_each_region(const F& f) {
+    std::apply([&](auto&... region) { Index r = 0; (f(region, r++), ...); }, laws_);
+  }
+  template <class F>
+  void for_each_region(const F& f) const {
+    std::apply([&](const auto&... region) { Index r = 0; (f(region, r++), ...); }, laws_);
+  }
+
+  // --- forces ------------------------------------------------------------------------------------------------
+  /// Adds the internal forces at the present state to `force` (and sets the director's flux and rates), advances
+  /// the histories by `time_step` if `commit`, and returns energies and powers. One pass over the table.
+  BodyTotals add_internal_forces(double time_step, bool commit) {
+    if constexpr (has_director) std::fill(director_flux.begin(), director_flux.end(), Vector4::Zero());
+    for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
+      chunk_totals_[c] = {};
+      chunk_stretch_[c] = 0.0;
+      chunk_failure_[c] = no_failure;
+      visit(chunk.region, [&](auto& region) {
+        using Law = typename std::decay_t<decltype(region)>::Law;
+        if (uses_rate<Law> || has_director || region.stabilization.modulus * region.stabilization.damping_time > 0.0)
+          pass<true>(region, chunk, c, time_step, commit);
+        else
+          pass<false>(region, chunk, c, time_step, commit);
+      });
+    });
+    BodyTotals totals;
+    for (const BodyTotals& part : chunk_totals_) totals += part;
+    return totals;
+  }
+
+  /// The first point whose volume ratio is not positive (or is NaN) after add_internal_forces; points() if none.
+  [[nodiscard]] std::size_t failed_point() const {
+    std::size_t failed = no_failure;
+    for (std::size_t q : chunk_failure_) failed = std::min(failed, q);
+    return failed == no_failure ? table_.points() : failed;
+  }
+
+  // --- stable step -------------------------------------------------------------------------------------------
+  /// Largest squared wave number that region r's points carry in the present configuration, 1/m², as bounded by
+  /// the shape of the rows alone: max_q k_q² ‖F_q⁻¹‖². Known after add_internal_forces.
+  [[nodiscard]] std::vector<double> region_wave_numbers() const {
+    std::vector<double> largest(sizeof...(Ms), 0.0);
+    for (std::size_t c = 0; c < table_.chunks.size(); ++c)
+      largest[table_.chunks[c].region] = std::max(largest[table_.chunks[c].region], chunk_stretch_[c]);
+    return largest;
+  }
+
+  // --- views -------------------------------------------------------------------------------------------------
+  /// Cauchy stress and volume ratio at all quadrature points, without advancing any history.
+  [[nodiscard]] std::vector<PointSample> sample_points() {
+    std::vector<PointSample> samples(table_.points());
+    for_each_region([&](auto& region, Index) {
+      using Region = std::decay_t<decltype(region)>;
+      parallel_for(region.end - region.begin, [&](std::size_t i) {
+        const std::size_t q = region.begin + i;
+        if (i % std::size_t(Region::width) != 0) return;
+        const std::size_t last = std::min(region.end, q + std::size_t(Region::width));
+        auto state = block_state<true>(region, q, last);
+        auto history = region.histories[region.block(q)];
+        state.time_step = 0.0;
+        const auto response = respond(region.law(q), state, history);
+        for (std::size_t p = q; p < last; ++p) {
+          const int l = static_cast<int>(p - q);
+          Tensor3 F, P;
+          for (int a = 0; a < 9; ++a) {
+            F(a % 3, a / 3) = lane(state.deformation_gradient(a % 3, a / 3), l);
+            P(a % 3, a / 3) = lane(response.stress(a % 3, a / 3), l);
+          }
+          samples[p] = {cauchy_from_piola(P, F), determinant(F)};
+        }
+      });
+    });
+    return samples;
+  }
+
+  /// A field of unknowns as values at the particles.
+  [[nodiscard]] Field at_particles(const Field& unknowns) const { return particle_values_.evaluate(unknowns); }
+
+  /// Rate operator A of the director at a particle (Dh/Dt = A h + …) and the volume ratio there.
+  [[nodiscard]] std::pair<Tensor3, double> director_rate(std::size_t particle) const {
+    Tensor3 A = Tensor3::Zero();
+    double J = 0.0, V = 0.0;
+    for (Index q : points_of_particle_[particle]) {
+      A += table_.volume[q] * point_rate_[q];
+      J += table_.volume[q] * point_volume_ratio_[q];
+      V += table_.volume[q];
+    }
+    return {A / V, J / V};
+  }
+
+  /// Bytes of the tables and fields of the body.
+  [[nodiscard]] std::size_t memory() const {
+    return table_.memory() + size() * (5 * sizeof(Vector4) + 2 * sizeof(double)) + table_.points() * sizeof(double);
+  }
+
+ private:
+  static constexpr std::size_t no_failure = std::numeric_limits<std::size_t>::max();
+
+  template <class F>
+  void visit(Index region, const F& f) {
+    std::apply([&](auto&... law) { Index r = 0; ((r++ == region ? f(law) : void()), ...); }, laws_);
+  }
+
+  template <std::size_t... I>
+  void match_regions(const Materials<Ms...>& materials, std::index_sequence<I...>) {
+    // The regions of the tuple take the numbers of the cloud's regions; points are sorted by those.
+    std::vector<std::string> names = cloud_.regions;
+    materials.validate();
+    std::vector<std::string> given;
+    materials.for_each([&](std::size_t, const auto& region) { given.push_back(region.name); });
+    std::vector<Index> number(names.size());
+    for (std::size_t r = 0; r < names.size(); ++r) {
+      const auto found = std::find(given.begin(), given.end(), names[r]);
+      if (found == given.end())
+        throw ParameterError(fmt::format("Body \"{}\": region \"{}\" of the cloud has no material; materials are given for: \"{}\".",
+                                         name_, names[r], fmt::join(given, "\", \"")));
+      number[r] = static_cast<Index>(found - given.begin());
+    }
+    if (given.size() != names.size())
+      throw ParameterError(fmt::format("Body \"{}\": {} materials are given for {} regions; the cloud has the regions \"{}\".",
+                                       name_, given.size(), names.size(), fmt::join(names, "\", \"")));
+    std::array<std::pair<std::size_t, std::size_t>, sizeof...(Ms)> range{};
+    for (std::size_t q = 0; q < table_.points(); ++q) {
+      auto& [first, last] = range[number[table_.region[q]]];
+      if (last == 0) first = q;
+      last = q + 1;
+    }
+    for (Index& r : table_.region) r = number[r];
+    for (PointChunk& chunk : table_.chunks) chunk.region = number[chunk.region];
+    (std::get<I>(laws_).prepare(std::get<I>(materials.regions).material, range[I].first, range[I].second, table_.position, quadrature_), ...);
+  }
+
+  void assemble_masses() {
+    masses_.assign(table_.particles, 0.0);
+    volumes_.assign(table_.particles, 0.0);
+    for_each_region([&](auto& region, Index) {
+      for (std::size_t q = region.begin; q < region.end; ++q) {
+        const double mass = table_.volume[q] * region.law(q).density;
+        if (table_.value_based()) {
+          masses_[table_.owner[q]] += mass;
+          volumes_[table_.owner[q]] += table_.volume[q];
+        } else {
+          for (std::size_t e = table_.offsets[q]; e < table_.offsets[q + 1]; ++e) {
+            masses_[table_.entries[e].particle] += mass * table_.point_values[e];
+            volumes_[table_.entries[e].particle] += table_.volume[q] * table_.point_values[e];
+          }
+        }
+      }
+    });
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (!(masses_[i] > 0.0))
+        throw GeometryError(fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.",
+                                        name_, i, table_.particle_position[i][0], table_.particle_position[i][1],
+                                        table_.particle_position[i][2], masses_[i]));
+  }
+
+  /// k_q² = V_q Σ_I ρ |G_qI|² / M_I: squared wave number of the point alone, in the reference configuration.
+  std::vector<double> wave_numbers() const {
+    std::vector<double> scale(table_.points(), 0.0);
+    for_each_region([&](const auto& region, Index) {
+      parallel_for(region.end - region.begin, [&](std::size_t i) {
+        const std::size_t q = region.begin + i;
+        for (const TableEntry& entry : table_.row(q)) {
+          const double g2 = entry.gradient[0] * entry.gradient[0] + entry.gradient[1] * entry.gradient[1] +
+                            entry.gradient[2] * entry.gradient[2];
+          scale[q] += table_.volume[q] * region.law(q).density * g2 / masses_[entry.particle];
+        }
+      });
+    });
+    return scale;
+  }
+
+  /// Gathered gradients of the fields at one point.
+  struct PointGradients {
+    rows::Gradient u, v, h;
+  };
+
+  template <bool Rate>
+  void gather_point(std::size_t q, PointGradients& g) const {
+    const auto row = table_.row(q);
+    if constexpr (has_director) rows::gather(row, displacement.data(), velocity.data(), director.data(), g.u, g.v, g.h);
+    else if constexpr (Rate) rows::gather(row, displacement.data(), velocity.data(), g.u, g.v);
+    else rows::gather(row, displacement.data(), g.u);
+  }
+
+  template <class T>
+  static void set_point(PointState<T>& state, const PointGradients& g, const Vector4* h, int l, bool rate) {
+    for (int K = 0; K < 3; ++K)
+      for (int i = 0; i < 3; ++i) {
+        set_lane(state.deformation_gradient(i, K), l, g.u.column[K][i] + (i == K ? 1.0 : 0.0));
+        if (rate) set_lane(state.deformation_rate(i, K), l, g.v.column[K][i]);
+        if constexpr (has_director) set_lane(state.director_gradient(i, K), l, g.h.column[K][i]);
+      }
+    if constexpr (has_director)
+      for (int i = 0; i < 3; ++i) set_lane(state.director(i), l, (*h)[i]);
+  }
+
+  template <bool Rate, class Region>
+  auto block_state(const Region&, std::size_t begin, std::size_t end) const {
+    PointState<typename Region::Scalar> state;
+    for (std::size_t q = begin; q < end; ++q) {
+      PointGradients g;
+      gather_point<Rate>(q, g);
+      set_point(state, g, has_director ? &director[table_.owner[q]] : nullptr, static_cast<int>(q - begin), Rate);
+    }
+    return state;
+  }
+
+  /// One chunk of one region: gather, law, scatter, block by block.
+  template <bool Rate, class Region>
+  void pass(Region& region, const PointChunk& chunk, std::size_t c, double time_step, bool commit) {
+    using T = typename Region::Scalar;
+    constexpr std::size_t W = Region::width;
+    const double kappa = table_.stabilization_scale.empty() ? 0.0 : region.stabilization.modulus;
+    const double tau = region.stabilization.damping_time;
+    BodyTotals totals;
+    double stretch = 0.0;
+    for (std::size_t first = chunk.begin; first < chunk.end; first += W) {
+      const std::size_t last = std::min(chunk.end, first + W);
+      PointState<T> state;
+      state.time_step = time_step;
+      PointGradients gradients[W];
+      for (std::size_t q = first; q < last; ++q) {
+        gather_point<Rate>(q, gradients[q - first]);
+        set_point(state, gradients[q - first], has_director ? &director[table_.owner[q]] : nullptr,
+                  static_cast<int>(q - first), Rate);
+      }
+      auto& stored = region.histories[region.block(first)];
+      auto history = stored;
+      const Response<T> response = respond(region.law(first), state, history);
+      const Inversion<T> F = invert(state.deformation_gradient);
+      bool sound = true;
+      for (int l = 0; l < int(last - first); ++l) sound = sound && lane(F.determinant, l) > 0.0;
+      if (commit && sound) stored = history;
+      const T bound = largest_eigenvalue_bound<T>(F.inverse * F.inverse.transpose());
+      Tensor<T> flux_h;
+      if constexpr (has_director) {
+        const Tensor<T> middle = state.deformation_gradient - state.deformation_rate * T(0.5 * time_step);
+        const Tensor<T> A = Director::rate_operator(velocity_gradient(state.deformation_rate, inverse(middle)));
+        flux_h = state.director_gradient * (F.inverse * F.inverse.transpose()) * F.determinant;
+        for (std::size_t q = first; q < last; ++q) {
+          for (int a = 0; a < 9; ++a) point_rate_[q](a % 3, a / 3) = lane(A(a % 3, a / 3), int(q - first));
+          point_volume_ratio_[q] = lane(F.determinant, int(q - first));
+        }
+      }
+      for (std::size_t q = first; q < last; ++q) {
+        const int l = static_cast<int>(q - first);
+        const double V = table_.volume[q], J = lane(F.determinant, l);
+        if (!(J > 0.0) || !std::isfinite(J)) chunk_failure_[c] = std::min(chunk_failure_[c], q);
+        stretch = std::max(stretch, point_scale_[q] * lane(bound, l));
+        totals.strain_energy += V * lane(response.energy, l);
+        totals.dissipated_power += V * lane(response.dissipated_power, l);
+        totals.active_power += V * lane(response.active_power, l);
+        rows::Gradient flux;  // components beyond the dimension are no unknowns, whatever the stress
+        for (int K = 0; K < dimension; ++K)
+          for (int i = 0; i < dimension; ++i) flux.column[K][i] = V * lane(response.stress(i, K), l);
+        const auto row = table_.row(q);
+        if (kappa > 0.0) {
+          const auto power = rows::stabilize(row, table_.owner[q], kappa * table_.stabilization_scale[q], tau, table_.period,
+                                             table_.particle_position.data(), displacement.data(),
+                                             Rate ? velocity.data() : nullptr, gradients[l].u, gradients[l].v, force.data(), flux);
+          totals.stabilization_energy += power.energy;
+          totals.dissipated_power += power.dissipated;
+        }
+        if constexpr (has_director) {
+          rows::Gradient h;
+          for (int K = 0; K < 3; ++K)
+            for (int i = 0; i < 3; ++i) h.column[K][i] = V * lane(flux_h(i, K), l);
+          rows::scatter(row, flux, h, force.data(), director_flux.data());
+        } else {
+          rows::scatter(row, flux, force.data());
+        }
+      }
+    }
+    chunk_totals_[c] += totals;
+    chunk_stretch_[c] = std::max(chunk_stretch_[c], stretch);
+  }
+
+  /// Upper bound of the largest eigenvalue of a symmetric tensor, exact where two eigenvalues are equal:
+  /// t/3 + √(2/3 (A:A − t²/3)), t = tr A.
+  template <class T>
+  static T largest_eigenvalue_bound(const Tensor<T>& A) {
+    using std::sqrt, std::abs;
+    const T mean = first_invariant(A) * T(1.0 / 3.0);
+    return mean + sqrt(abs(contract(A, A) - mean * mean * T(3.0)) * T(2.0 / 3.0));
+  }
+
+  std::string name_;
+  PointCloud<dimension> cloud_;
+  KernelType kernel_;
+  QuadratureType quadrature_;
+  Director director_law_;
+  PointTable table_;
+  ParticleValues particle_values_;
+  std::tuple<RegionLaw<Ms>...> laws_;
+  std::vector<double> masses_, volumes_;
+  std::vector<double> point_scale_;  // wave_numbers()
+  std::vector<BodyTotals> chunk_totals_;
+  std::vector<double> chunk_stretch_;
+  std::vector<std::size_t> chunk_failure_;
+  std::vector<Tensor3> point_rate_;
+  std::vector<double> point_volume_ratio_;
+  std::vector<std::vector<Index>> points_of_particle_;
+};
+
+template <class K, class Q, class... Ms>
+Body(std::string, PointCloud<K::dimension>, K, Q, Materials<Ms...>) -> Body<K, Q, Materials<Ms...>, NoDirector>;
+template <class K, class Q, class... Ms, class Director, class Initial>
+Body(std::string, PointCloud<K::dimension>, K, Q, Materials<Ms...>, Director, Initial)
+    -> Body<K, Q, Materials<Ms...>, Director>;
+
+}  // namespace tactoid

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+
+namespace tactoid {
+
+/// The values of a body at its particles, which contacts, boundary terms and observers see.
+struct BodyFields {
+  Field reference, position, velocity, force;
+  std::vector<double> mass, volume;
+
+  template <class Body>
+  void prepare(const Body& body) {
+    reference = body.table().particle_position;
+    position = reference;
+    velocity.assign(body.size(), Vector4::Zero());
+    force.assign(body.size(), Vector4::Zero());
+    mass = body.masses();
+    volume = body.nodal_volumes();
+  }
+
+  /// Positions at the present state, velocities extrapolated by half of the last step to the same instant with
+  /// the forces of the step before; forces are cleared.
+  template <class Body>
+  void refresh(const Body& body, double last_step) {
+    if (body.particle_values().identity()) {
+      parallel_for(body.size(), [&](std::size_t i) {
+        position[i] = reference[i] + body.displacement[i];
+        velocity[i] = body.velocity[i] + (0.5 * last_step / body.masses()[i]) * body.force[i];
+        force[i].setZero();
+      });
+    } else {
+      position = body.at_particles(body.displacement);
+      Field v = body.velocity;
+      for (std::size_t i = 0; i < v.size(); ++i) v[i] += (0.5 * last_step / body.masses()[i]) * body.force[i];
+      velocity = body.at_particles(v);
+      for (std::size_t i = 0; i < position.size(); ++i) position[i] += reference[i];
+      std::fill(force.begin(), force.end(), Vector4::Zero());
+    }
+  }
+
+  [[nodiscard]] ParticleFields view() { return {reference, position, velocity, mass, volume, force}; }
+};
+
+}  // namespace tactoid

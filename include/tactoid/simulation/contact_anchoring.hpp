@@ -1,0 +1,50 @@
+#pragma once
+
+#include <tactoid/contact/first_touch.hpp>
+#include <tactoid/contact/gaps.hpp>
+#include <tactoid/contact/per_dimension.hpp>
+#include <tactoid/core/errors.hpp>
+
+namespace tactoid {
+
+/// Strong anchoring of the director on the contact surface, h = h̄: a particle of A's surface whose gap to B falls
+/// to the capture distance for the first time keeps the director that it has then. Placed among the contacts,
+/// `between<0, 1>(ContactAnchoring{})`; it exerts no force. Zeng and Li, Soft Matter 2012, 8, 5765, below eqn (10).
+struct ContactAnchoring {
+  double capture_distance = 100e-9;  ///< m, > 0
+  int interval = 10;                 ///< steps between two looks at the gaps
+  PerDimension<SurfaceGaps> gaps{};  ///< set by initialize(), as the rest
+  FirstTouch touch{};
+  int countdown = 0;
+  bool fresh = false;
+
+  template <int D>
+  void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b, const ParticleFields& b) {
+    require_positive("ContactAnchoring.capture_distance", capture_distance, "m");
+    if (interval < 1) reject("ContactAnchoring.interval", interval, "", "at least 1");
+    gaps.emplace<D>().initialize(cloud_a, a, cloud_b, b);
+    touch.capture_distance = capture_distance;
+  }
+
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) {
+    if (countdown-- == 0) {
+      countdown = interval - 1;
+      fresh = true;
+      gaps.visit([&](auto& g) { g.measure(a, b); });
+    }
+    return {};
+  }
+  [[nodiscard]] double stiffness_rate(const ParticleFields&, const ParticleFields&) const { return 0.0; }
+
+  /// Holds the director of the particles that touch for the first time.
+  template <class Body>
+  void anchor(Body& body) {
+    static_assert(Body::has_director, "ContactAnchoring needs a director field on the first body.");
+    if (!fresh) return;
+    fresh = false;
+    if (body.anchored.empty()) body.anchored.assign(body.size(), 0);
+    for (Index i : touch.update(gaps.visit([](const auto& g) { return g.gaps(); }))) body.anchored[i] = 1;
+  }
+};
+
+}  // namespace tactoid

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactoid {
+
+/// The energies of a simulation at one instant and the works since its start, J.
+struct EnergyLedger {
+  double kinetic = 0.0;
+  double strain = 0.0;         ///< of the laws
+  double stabilization = 0.0;  ///< of the quadrature's stabilisation
+  double adhesion = 0.0;       ///< potentials of the contacts
+  double surface = 0.0;        ///< potentials of the boundary terms (surface tension, pressure, gravity)
+  double dissipated = 0.0;     ///< by viscosity, damping, and the branches that have no energy
+  double external_work = 0.0;  ///< of prescribed motion, active stress, and forces without an energy
+
+  double initial = 0.0;       ///< total() at the start
+  double largest_work = 0.0;  ///< largest |work| or energy exchanged so far: the scale of the error
+
+  [[nodiscard]] double total() const { return kinetic + strain + stabilization + adhesion + surface; }
+  /// total + dissipated − external work − initial total: zero for exact integration in time.
+  [[nodiscard]] double defect() const { return total() + dissipated - external_work - initial; }
+  /// |defect| over the largest work done so far.
+  [[nodiscard]] double error() const { return largest_work > 0.0 ? std::abs(defect()) / largest_work : 0.0; }
+
+  void note_scale() {
+    for (const double e : {kinetic, strain, dissipated, external_work, total() - initial})
+      largest_work = std::max(largest_work, std::abs(e));
+  }
+};
+
+}  // namespace tactoid

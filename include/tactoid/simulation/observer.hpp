@@ -1,0 +1,106 @@
+#pragma once
+
+#include <concepts>
+#include <limits>
+#include <utility>
+
+#include <tactoid/core/errors.hpp>
+#include <tactoid/core/unsatisfied.hpp>
+
+namespace tactoid {
+
+/// What Simulation::run calls. An observer may read everything and changes nothing.
+///   begin(simulation)        before the first step
+///   next_time(simulation)    s: the run stops exactly there, and calls after_step; infinity if it does not matter
+///   after_step(simulation)   after every step
+///   end(simulation)          at the end of the run
+///   last_good_state(simulation)   instead of end, when a step broke down: the state before it has been restored
+template <class O, class System>
+concept Observer =
+    (requires(O& o, System& s) {
+      o.begin(s);
+      o.after_step(s);
+      o.end(s);
+      o.last_good_state(s);
+    } || unsatisfied<"An Observer has begin, after_step, end and last_good_state, each called with the Simulation; "
+                     "wrap a function as `every(interval, function)`.">) &&
+    (requires(O& o, System& s) {
+      { o.next_time(s) } -> std::convertible_to<double>;
+    } || unsatisfied<"An Observer has `double next_time(const Simulation&)`: when it must be called next, s.">);
+
+/// Calls `function(simulation)` at the start, every `interval` seconds of simulated time and at the end.
+template <class F>
+class Every {
+ public:
+  Every(double interval, F function) : interval_(interval), function_(std::move(function)) {
+    require_positive("every: interval", interval, "s");
+  }
+  template <class S>
+  void begin(S& simulation) {
+    start_ = simulation.time();
+    count_ = 0;
+    call(simulation);
+  }
+  template <class S>
+  [[nodiscard]] double next_time(const S&) const { return start_ + interval_ * static_cast<double>(count_ + 1); }
+  template <class S>
+  void after_step(S& simulation) {
+    if (simulation.time() < next_time(simulation)) return;
+    ++count_;
+    call(simulation);
+  }
+  template <class S>
+  void end(S& simulation) {
+    if (simulation.time() > called_) call(simulation);
+  }
+  template <class S>
+  void last_good_state(S& simulation) { call(simulation); }
+
+ private:
+  template <class S>
+  void call(S& simulation) {
+    called_ = simulation.time();
+    function_(simulation);
+  }
+  double interval_;
+  F function_;
+  double start_ = 0.0, called_ = -1.0;
+  long count_ = 0;
+};
+
+template <class F>
+[[nodiscard]] Every<F> every(double interval, F function) {
+  return {interval, std::move(function)};
+}
+
+/// Calls `function(simulation)` after every `steps` steps; the times of the steps are not touched.
+template <class F>
+class EverySteps {
+ public:
+  EverySteps(long steps, F function) : steps_(steps), function_(std::move(function)) {
+    if (steps < 1) reject("every_steps: steps", static_cast<double>(steps), "", "at least 1");
+  }
+  template <class S>
+  void begin(S& simulation) { function_(simulation); }
+  template <class S>
+  [[nodiscard]] double next_time(const S&) const { return std::numeric_limits<double>::infinity(); }
+  template <class S>
+  void after_step(S& simulation) {
+    if (++count_ % steps_ == 0) function_(simulation);
+  }
+  template <class S>
+  void end(S& simulation) { function_(simulation); }
+  template <class S>
+  void last_good_state(S& simulation) { function_(simulation); }
+
+ private:
+  long steps_, count_ = 0;
+  F function_;
+};
+
+template <class F>
+[[nodiscard]] EverySteps<F> every_steps(long steps, F function) {
+  return {steps, std::move(function)};
+}
+
+}  // namespace tactoid

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+#include <tactoid/core/lanes.hpp>
+#include <tactoid/material/all.hpp>
+#include <tactoid/quadrature/quadrature.hpp>
+
+namespace tactoid {
+
+/// Lanes that the force loop evaluates a law on. Eight doubles are one register of the widest machines; narrower
+/// machines take two or four registers.
+using LoopLanes = Lanes<8>;
+
+/// The law of one region, its histories and its stabilisation, as the force loop of a body needs them: points
+/// [begin, end) of the table, in blocks of as many points as the scalar has lanes. A graded law differs from
+/// point to point, so it is stored per point and evaluated one point at a time.
+template <class M>
+struct RegionLaw {
+  static constexpr bool graded = is_graded<M>;
+  using Law = LawOf<M>;
+  using Scalar = std::conditional_t<graded, double, LoopLanes>;
+  static constexpr int width = lane_count<Scalar>;
+
+  std::vector<Law> laws;  ///< one, or one per point when graded
+  std::vector<HistoryOf<Law, Scalar>> histories;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  Stabilization stabilization;
+
+  /// Wave speed squared and kinematic longitudinal viscosity, the largest over the region, m²/s² and m²/s.
+  double wave_speed_squared = 0.0;
+  double kinematic_viscosity = 0.0;
+
+  [[nodiscard]] const Law& law(std::size_t q) const { return laws[graded ? q - begin : 0]; }
+  [[nodiscard]] std::size_t block(std::size_t q) const { return (q - begin) / static_cast<std::size_t>(width); }
+
+  template <class Q>
+  void prepare(const M& material, std::size_t first, std::size_t last, const std::vector<Vector3>& positions,
+               const Q& quadrature) {
+    begin = first;
+    end = last;
+    if constexpr (graded) {
+      for (std::size_t q = begin; q < end; ++q) laws.push_back(material.at(positions[q]));
+    } else {
+      laws.push_back(material);
+    }
+    double softest = shear_modulus(laws.front());
+    for (const Law& law : laws) {
+      if constexpr (requires { law.validate(); }) law.validate();
+      wave_speed_squared = std::max(wave_speed_squared, law.wave_speed() * law.wave_speed());
+      kinematic_viscosity = std::max(kinematic_viscosity, viscosity_modulus(law) / law.density);
+      softest = std::min(softest, shear_modulus(law));
+    }
+    histories.resize((end - begin + width - 1) / static_cast<std::size_t>(width));
+    stabilization = quadrature.stabilization(softest);
+  }
+};
+
+}  // namespace tactoid

@@ -1,0 +1,330 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tactoid/boundary/boundary.hpp>
+#include <tactoid/boundary/essential_conditions.hpp>
+#include <tactoid/boundary/prescribed_motion.hpp>
+#include <tactoid/contact/contact.hpp>
+#include <tactoid/core/errors.hpp>
+#include <tactoid/integrator/integrator.hpp>
+#include <tactoid/simulation/body.hpp>
+#include <tactoid/simulation/body_fields.hpp>
+#include <tactoid/simulation/contact_anchoring.hpp>
+#include <tactoid/simulation/energy_ledger.hpp>
+#include <tactoid/simulation/observer.hpp>
+#include <tactoid/simulation/placement.hpp>
+#include <tactoid/simulation/stable_step.hpp>
+
+namespace tactoid {
+
+/// Bodies, the contacts between them, what acts on their boundaries, and the integrator that advances them:
+///
+///   Simulation simulation{Bodies{cell, substrate},
+///                         Contacts{between<0, 1>(LigandReceptor{}), between<0, 1>(VanDerWaals{})},
+///                         Boundaries{on<0>(SurfaceTension{}), on<1>(fixed(bottom))},
+///                         CentralDifference{}};
+///   simulation.run(5_us, every(0.1_us, observer));
+///
+/// Everything is checked and evaluated once at construction; ParameterError or GeometryError tell what is wrong.
+/// Forces are summed in a fixed order: results are the same to the bit for any number of threads.
+template <class BodiesType, class ContactsType, class BoundariesType, class IntegratorType>
+class Simulation;
+
+template <class... B, class... C, class... T, class I>
+class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
+ public:
+  static constexpr std::size_t body_count = sizeof...(B);
+  static constexpr int dimension = std::tuple_element_t<0, std::tuple<B...>>::dimension;
+  static_assert(((B::dimension == dimension) && ...), "All bodies of a Simulation have the same dimension.");
+
+  Simulation(Bodies<B...> bodies, Contacts<C...> contacts, Boundaries<T...> boundaries, I integrator)
+      : bodies_(std::move(bodies.list)), contacts_(std::move(contacts.list)), boundaries_(std::move(boundaries.list)),
+        integrator_(std::move(integrator)) {
+    static_assert(Integrator<I, Simulation>, "The last argument of a Simulation is an Integrator.");
+    for_each_body([&](auto& body, std::size_t b) {
+      fields_[b].prepare(body);
+      std::vector<PrescribedMotion> motions;
+      for_each_boundary([&](auto& on, std::size_t) {
+        if constexpr (is_motion<decltype(on)>)
+          if (std::decay_t<decltype(on)>::body == b) motions.push_back(on.term);
+      });
+      essential_[b] = EssentialConditions(std::move(motions), body.particle_values(), body.table().particle_position, body.masses());
+      essential_[b].impose(0.0, 0.0, 0.0, body.displacement, body.velocity);
+      fields_[b].refresh(body, 0.0);
+    });
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      static_assert(Pair::first < body_count && Pair::second < body_count, "A contact names a body that does not exist.");
+      between.contact.initialize(std::get<Pair::first>(bodies_).cloud(), fields_[Pair::first].view(),
+                                 std::get<Pair::second>(bodies_).cloud(), fields_[Pair::second].view());
+    });
+    for_each_boundary([&](auto& on, std::size_t) {
+      using Place = std::decay_t<decltype(on)>;
+      static_assert(Place::body < body_count, "A boundary term names a body that does not exist.");
+      if constexpr (!is_motion<decltype(on)>) {
+        static_assert(BoundaryTerm<decltype(on.term), dimension>, "on<…>() takes a BoundaryTerm or a PrescribedMotion.");
+        on.term.initialize(std::get<Place::body>(bodies_).cloud(), fields_[Place::body].view());
+      }
+    });
+    for_each_body([&](auto& body, std::size_t b) { stable_[b].calibrate(body); });
+    evaluate();
+    ledger_.initial = ledger_.total();
+    integrator_.initialize(*this);
+  }
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  // --- parts -------------------------------------------------------------------------------------------------
+  template <std::size_t N>
+  [[nodiscard]] auto& body() { return std::get<N>(bodies_); }
+  template <std::size_t N>
+  [[nodiscard]] const auto& body() const { return std::get<N>(bodies_); }
+  template <std::size_t N>
+  [[nodiscard]] auto& contact() { return std::get<N>(contacts_).contact; }
+  template <std::size_t N>
+  [[nodiscard]] auto& boundary() { return std::get<N>(boundaries_).term; }
+  [[nodiscard]] const I& integrator() const { return integrator_; }
+  [[nodiscard]] double time() const { return time_; }
+  [[nodiscard]] double last_time_step() const { return last_step_; }
+  [[nodiscard]] std::size_t steps() const { return steps_; }
+  [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
+  /// Values at the particles of a body: positions, velocities, forces of contacts and boundary terms.
+  template <std::size_t N>
+  [[nodiscard]] ParticleFields particles() { return fields_[N].view(); }
+  /// Essential conditions of a body, with their reactions.
+  template <std::size_t N>
+  [[nodiscard]] const EssentialConditions& essential() const { return essential_[N]; }
+
+  template <class F>
+  void for_each_body(const F& f) {
+    [&]<std::size_t... N>(std::index_sequence<N...>) { (f(std::get<N>(bodies_), N), ...); }(std::index_sequence_for<B...>{});
+  }
+  template <class F>
+  void for_each_body(const F& f) const {
+    [&]<std::size_t... N>(std::index_sequence<N...>) { (f(std::get<N>(bodies_), N), ...); }(std::index_sequence_for<B...>{});
+  }
+
+  /// Pairs of quadrature points and particles that one step visits.
+  [[nodiscard]] std::size_t pairs() const {
+    std::size_t sum = 0;
+    for_each_body([&](const auto& body, std::size_t) { sum += body.table().pairs(); });
+    return sum;
+  }
+
+  /// Velocity at the present instant (not at the middle of the last step) of the unknowns of a body, m/s.
+  template <std::size_t N>
+  [[nodiscard]] Field velocity() const {
+    const auto& body = std::get<N>(bodies_);
+    Field v(body.size());
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = present_velocity(body, N, i);
+    return v;
+  }
+
+  // --- running -----------------------------------------------------------------------------------------------
+  /// Advances to the time `until` (s). Observers are called at the start, at their times, and at the end; steps
+  /// are cut so that these times are hit exactly. When a step breaks down, the last good state is restored, every
+  /// observer is told by `last_good_state(simulation)` if it has that function, and the error goes on.
+  template <class... Observers>
+  void run(double until, Observers&&... observers) {
+    static_assert((Observer<std::remove_cvref_t<Observers>, Simulation> && ...), "Simulation::run takes observers.");
+    if (!(until >= time_) || !std::isfinite(until)) reject("Simulation.run: end time", until, "s", fmt::format("finite and not before the present time, {:g} s", time_));
+    (observers.begin(*this), ...);
+    while (time_ < until) {
+      // Events that coincide but for round-off are one: no step is as short as that.
+      const double close = 1e-6 * (last_step_ > 0.0 ? last_step_ : largest_stable_time_step());
+      const double first = std::min({until, observers.next_time(*this)...});
+      double next = first;
+      for (const double event : {until, observers.next_time(*this)...})
+        if (event <= first + close) next = std::max(next, event);
+      if (until <= first + close) next = until;
+      moved_ = false;
+      try {
+        integrator_.step(*this, next);
+      } catch (const ComputationError&) {
+        if (moved_) restore();
+        (observers.last_good_state(*this), ...);
+        throw;
+      }
+      if (next - time_ < close) time_ = next;
+      ++steps_;
+      (observers.after_step(*this), ...);
+    }
+    (observers.end(*this), ...);
+  }
+
+  // --- what an integrator uses -------------------------------------------------------------------------------
+  [[nodiscard]] double largest_stable_time_step() const {
+    double step = std::numeric_limits<double>::infinity();
+    for_each_body([&](const auto& body, std::size_t b) {
+      step = std::min(step, stable_[b].largest_step(body, term_rates_[b]));
+    });
+    return step;
+  }
+
+  void kick(double time_step) {
+    for_each_body([&](auto& body, std::size_t b) {
+      previous_velocity_[b] = body.velocity;
+      parallel_for(body.size(), [&](std::size_t i) { body.velocity[i] += (time_step / body.masses()[i]) * body.force[i]; });
+    });
+  }
+
+  void drift(double time_step) {
+    for_each_body([&](auto& body, std::size_t b) {
+      previous_[b] = body.displacement;
+      parallel_for(body.size(), [&](std::size_t i) { body.displacement[i] += time_step * body.velocity[i]; });
+      if (essential_[b].empty()) return;
+      ledger_.external_work += essential_[b].impose(time_ + time_step, time_step, last_step_, body.displacement, body.velocity);
+      for (std::size_t i = 0; i < body.size(); ++i) body.force[i] += essential_[b].forces()[i];
+    });
+    moved_ = true;
+    step_before_ = last_step_;
+    time_ += time_step;
+    last_step_ = time_step;
+  }
+
+  /// Forces and energies at the present state; histories and directors are advanced by the last step.
+  void evaluate() {
+    TermEnergy contact_energy, boundary_energy;
+    for_each_body([&](auto& body, std::size_t b) { fields_[b].refresh(body, last_step_); });
+    const bool measure_rates = steps_ % rate_interval == 0;
+    if (measure_rates) term_rates_.fill(0.0);
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      const ParticleFields a = fields_[Pair::first].view(), b = fields_[Pair::second].view();
+      contact_energy += between.contact.apply(a, b, time_);
+      if (!measure_rates) return;
+      const double rate = between.contact.stiffness_rate(a, b);
+      term_rates_[Pair::first] += rate;
+      term_rates_[Pair::second] += rate;
+    });
+    for_each_boundary([&](auto& on, std::size_t) {
+      if constexpr (!is_motion<decltype(on)>) {
+        constexpr std::size_t b = std::decay_t<decltype(on)>::body;
+        boundary_energy += on.term.apply(fields_[b].view(), time_);
+        if (measure_rates) term_rates_[b] += on.term.stiffness_rate(fields_[b].view());
+      }
+    });
+    BodyTotals internal;
+    double kinetic = 0.0;
+    for_each_body([&](auto& body, std::size_t b) {
+      std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
+      body.particle_values().distribute(fields_[b].force, body.force);
+      internal += body.add_internal_forces(last_step_, true);
+      check(body);
+      if constexpr (std::decay_t<decltype(body)>::has_director) advance_director(body, last_step_);
+      for (std::size_t i = 0; i < body.size(); ++i) kinetic += 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
+    });
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      if constexpr (requires { between.contact.anchor(std::get<Pair::first>(bodies_)); }) between.contact.anchor(std::get<Pair::first>(bodies_));
+    });
+    ledger_.kinetic = kinetic;
+    ledger_.strain = internal.strain_energy;
+    ledger_.stabilization = internal.stabilization_energy;
+    ledger_.adhesion = contact_energy.potential;
+    ledger_.surface = boundary_energy.potential;
+    // The laws' powers are taken with the velocity of the middle of the step, the terms' at its ends.
+    const double external_power = contact_energy.external_power + boundary_energy.external_power;
+    const double dissipated_power = contact_energy.dissipated_power + boundary_energy.dissipated_power;
+    ledger_.external_work += last_step_ * (0.5 * (external_power_ + external_power) + internal.active_power);
+    ledger_.dissipated += last_step_ * (0.5 * (dissipated_power_ + dissipated_power) + internal.dissipated_power);
+    external_power_ = external_power;
+    dissipated_power_ = dissipated_power;
+    if (last_step_ > 0.0) ledger_.note_scale();
+  }
+
+ private:
+  static constexpr std::size_t rate_interval = 20;  // steps between two estimates of the contacts' stiffness
+
+  template <class Place>
+  static constexpr bool is_motion = std::is_same_v<std::decay_t<decltype(std::declval<Place>().term)>, PrescribedMotion>;
+
+  template <class F>
+  void for_each_contact(const F& f) {
+    std::apply([&](auto&... c) { std::size_t n = 0; (f(c, n++), ...); }, contacts_);
+  }
+  template <class F>
+  void for_each_boundary(const F& f) {
+    std::apply([&](auto&... t) { std::size_t n = 0; (f(t, n++), ...); }, boundaries_);
+  }
+
+  /// Half a step with the forces at the present state; those of the conditions are the last ones.
+  template <class Body>
+  [[nodiscard]] Vector4 present_velocity(const Body& body, std::size_t b, std::size_t i) const {
+    Vector4 force = body.force[i];
+    if (!essential_[b].empty()) force += essential_[b].forces()[i];
+    return body.velocity[i] + (0.5 * last_step_ / body.masses()[i]) * force;
+  }
+
+  /// h ← one Cayley step of Dh/Dt = A h + D (diffusion − J r(h)), at all particles whose director is free.
+  template <class Body>
+  static void advance_director(Body& body, double time_step) {
+    if (time_step <= 0.0) return;
+    const auto& law = body.director_law();
+    parallel_for(body.size(), [&](std::size_t i) {
+      if (!body.anchored.empty() && body.anchored[i]) return;
+      const auto [A, J] = body.director_rate(i);
+      const Vector3 h = body.director[i].template head<3>();
+      const Vector3 source = (law.diffusivity / body.nodal_volumes()[i]) * body.director_flux[i].template head<3>() + J * law.source(h);
+      body.director[i].template head<3>() = cayley_update(A, h, time_step, source);
+    });
+  }
+
+  template <class Body>
+  void check(const Body& body) const {
+    const std::size_t q = body.failed_point();
+    if (q == body.table().points()) return;
+    const Index particle = body.table().owner[q];
+    const Vector3 X = body.table().position[q];
+    const Vector4& u = body.displacement[particle];
+    bool finite = u.allFinite();
+    for (const TableEntry& entry : body.table().row(q)) finite = finite && body.displacement[entry.particle].allFinite();
+    throw ComputationError(fmt::format(
+        "Body \"{}\", particle {} at X = ({:.4g}, {:.4g}, {:.4g}) m, u = ({:.3g}, {:.3g}, {:.3g}) m, t = {:.6g} s: {}.", body.name(), particle, X[0], X[1],
+        X[2], u[0], u[1], u[2], time_,
+        finite ? "the point is inverted (J <= 0); likely causes are a deformation too large for this resolution, a contact "
+                 "too violent, or too weak a stabilisation"
+               : "the displacement is not a number; likely causes are a time step above the stable one or a law "
+                 "evaluated outside its range"));
+  }
+
+  void restore() {
+    for_each_body([&](auto& body, std::size_t b) {
+      body.displacement = previous_[b];
+      if (!previous_velocity_[b].empty()) body.velocity = previous_velocity_[b];
+      std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
+      fields_[b].refresh(body, 0.0);
+    });
+    time_ -= last_step_;
+    last_step_ = step_before_;
+  }
+
+  std::tuple<B...> bodies_;
+  std::tuple<C...> contacts_;
+  std::tuple<T...> boundaries_;
+  I integrator_;
+  std::array<BodyFields, body_count> fields_;
+  std::array<EssentialConditions, body_count> essential_;
+  std::array<StableStep, body_count> stable_;
+  std::array<double, body_count> term_rates_{};  // ω² of contacts and boundary terms, 1/s²
+  std::array<Field, body_count> previous_, previous_velocity_;  // before the last drift and the last kick
+  bool moved_ = false;
+  EnergyLedger ledger_;
+  double external_power_ = 0.0, dissipated_power_ = 0.0;  // of contacts and boundary terms at the last evaluation, W
+  double time_ = 0.0, last_step_ = 0.0, step_before_ = 0.0;
+  std::size_t steps_ = 0;
+};
+
+template <class... B, class... C, class... T, class I>
+Simulation(Bodies<B...>, Contacts<C...>, Boundaries<T...>, I) -> Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I>;
+
+}  // namespace tactoid

@@ -1,0 +1,162 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/material/tangent.hpp>
+#include <tactoid/quadrature/coloring.hpp>
+#include <tactoid/quadrature/rows.hpp>
+#include <tactoid/simulation/row_operations.hpp>
+
+namespace tactoid {
+
+/// The stiffness of a body: unknown i of particle I has the number D I + i.
+using StiffnessMatrix = Eigen::SparseMatrix<double>;
+
+namespace detail {
+
+/// Zero matrix with a D × D block for every two particles that share a point, columns sorted by row.
+template <int D>
+[[nodiscard]] StiffnessMatrix stiffness_pattern(const PointTable& table) {
+  std::vector<std::vector<Index>> points_of(table.particles);
+  for (Index q = 0; q < table.points(); ++q)
+    for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
+      if (!is_padding(table, q, e)) points_of[table.entries[e].particle].push_back(q);
+  std::vector<std::vector<Index>> near(table.particles);
+  parallel_for(table.particles, [&](std::size_t j) {
+    for (Index q : points_of[j])
+      for (const TableEntry& entry : table.row(q)) near[j].push_back(entry.particle);
+    std::sort(near[j].begin(), near[j].end());
+    near[j].erase(std::unique(near[j].begin(), near[j].end()), near[j].end());
+  });
+  const auto n = static_cast<Eigen::Index>(D * table.particles);
+  StiffnessMatrix K(n, n);
+  Eigen::VectorXi sizes(n);
+  for (std::size_t j = 0; j < near.size(); ++j)
+    sizes.segment<D>(static_cast<Eigen::Index>(D * j)).setConstant(static_cast<int>(D * near[j].size()));
+  K.reserve(sizes);
+  for (std::size_t j = 0; j < near.size(); ++j)
+    for (int c = 0; c < D; ++c)
+      for (Index i : near[j])
+        for (int r = 0; r < D; ++r)
+          K.insert(static_cast<Eigen::Index>(D * i) + r, static_cast<Eigen::Index>(D * j) + c) = 0.0;
+  K.makeCompressed();
+  return K;
+}
+
+/// The law's history at one lane of a block.
+template <class Law, class T>
+[[nodiscard]] tactoid::HistoryOf<Law, double> history_at_lane(const tactoid::HistoryOf<Law, T>& block, [[maybe_unused]] int l) {
+  tactoid::HistoryOf<Law, double> one;
+  if constexpr (history_size<Law> > 0) {
+    tactoid::HistoryOf<Law, T> copy = block;
+    const T* from = history_scalars<Law, T>(copy);
+    double* to = history_scalars<Law, double>(one);
+    for (std::size_t i = 0; i < history_size<Law>; ++i) to[i] = lane(from[i], l);
+  }
+  return one;
+}
+
+/// κ Cᵀ w C of the stabilising energy ½ κ Σ_J w_J |Σ_M c_JM u_M|², c_JM = δ_JM − δ_IM − ΔX_J · G_M, the same for
+/// every component.
+[[nodiscard]] inline Eigen::MatrixXd stabilization_stiffness(const PointTable& table, std::size_t q, std::size_t size,
+                                                             double kappa) {
+  const auto row = table.row(q).first(size);
+  const auto n = static_cast<Eigen::Index>(size);
+  const Index owner = table.owner[q];
+  Eigen::MatrixXd c(n, n);
+  Eigen::VectorXd w(n);
+  for (Eigen::Index J = 0; J < n; ++J) {
+    const TableEntry& entry = row[static_cast<std::size_t>(J)];
+    Vector3 dX = (table.particle_position[entry.particle] - table.particle_position[owner]).head<3>();
+    for (int k = 0; k < 3; ++k)
+      if (table.period[k] > 0.0) dX[k] -= table.period[k] * std::round(dX[k] / table.period[k]);
+    w[J] = kappa * static_cast<double>(entry.weight);
+    for (Eigen::Index M = 0; M < n; ++M) {
+      const TableEntry& other = row[static_cast<std::size_t>(M)];
+      c(J, M) = (J == M ? 1.0 : 0.0) - (other.particle == owner ? 1.0 : 0.0);
+      for (int k = 0; k < 3; ++k) c(J, M) -= dX[k] * other.gradient[k];
+    }
+  }
+  return c.transpose() * w.asDiagonal() * c;
+}
+
+/// Calls add(a, b, offset) for the entries a, b of row q, where `offset` is the place of the first component of the
+/// block (a, b) within a column of the matrix.
+template <int D, class Add>
+void for_each_block(const StiffnessMatrix& K, std::span<const TableEntry> row, const Add& add) {
+  for (std::size_t b = 0; b < row.size(); ++b) {
+    const auto column = static_cast<Eigen::Index>(D * row[b].particle);
+    const int* inner = K.innerIndexPtr() + K.outerIndexPtr()[column];
+    int place = 0;
+    for (std::size_t a = 0; a < row.size(); ++a) {
+      const int wanted = static_cast<int>(D * row[a].particle);
+      while (inner[place] != wanted) place += D;
+      add(a, b, place);
+    }
+  }
+}
+
+}  // namespace detail
+
+/// Stiffness K = −∂f/∂u of the internal forces at the present state of a body, D N × D N with D its dimension:
+///   K = Σ_q V_q Gᵀ A G + the stiffness of the stabilisation,   A = ∂P/∂F by automatic differentiation.
+/// Velocities are taken as zero; laws with memory answer as to a sudden change, and the director is held. Symmetric
+/// for laws with an energy. For statics, vibration and implicit steps; the explicit steps need none.
+template <class Body>
+[[nodiscard]] StiffnessMatrix assemble_stiffness(const Body& body) {
+  constexpr int D = Body::dimension;
+  const PointTable& table = body.table();
+  StiffnessMatrix K = detail::stiffness_pattern<D>(table);
+  body.for_each_region([&](const auto& region, Index r) {
+    using Law = typename std::decay_t<decltype(region)>::Law;
+    const double modulus = table.stabilization_scale.empty() ? 0.0 : region.stabilization.modulus;
+    for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
+      if (chunk.region != r) return;
+      for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
+        auto row = table.row(q);
+        if (is_padding(table, q, table.offsets[q + 1] - 1)) row = row.first(row.size() - 1);
+        PointState<double> state;
+        rows::Gradient du, dh;
+        rows::gather(table.row(q), body.displacement.data(), du);
+        if constexpr (Body::has_director) {
+          rows::gather(table.row(q), body.director.data(), dh);
+          state.director = body.director[table.owner[q]].template head<3>();
+        }
+        for (int k = 0; k < 3; ++k) {
+          state.deformation_gradient.col(k) += du.column[k].template head<3>();
+          state.director_gradient.col(k) = dh.column[k].template head<3>();
+        }
+        const int l = static_cast<int>((q - region.begin) % static_cast<std::size_t>(region.width));
+        const auto history = detail::history_at_lane<Law, typename std::decay_t<decltype(region)>::Scalar>(region.histories[region.block(q)], l);
+        const Tangent A = tangent(region.law(q), state, history);
+        std::vector<Eigen::Matrix<double, D, 9>> left(row.size());  // V G_a · A
+        for (std::size_t a = 0; a < row.size(); ++a)
+          for (int i = 0; i < D; ++i) {
+            left[a].row(i).setZero();
+            for (int k = 0; k < D; ++k) left[a].row(i) += table.volume[q] * row[a].gradient[k] * A.row(3 * i + k);
+          }
+        Eigen::MatrixXd hold;
+        if (modulus > 0.0)
+          hold = detail::stabilization_stiffness(table, q, row.size(), modulus * table.stabilization_scale[q]);
+        detail::for_each_block<D>(K, row, [&](std::size_t a, std::size_t b, int place) {
+          for (int j = 0; j < D; ++j) {
+            double* column = K.valuePtr() + K.outerIndexPtr()[static_cast<Eigen::Index>(D * row[b].particle) + j] + place;
+            for (int i = 0; i < D; ++i) {
+              double k = 0.0;
+              for (int m = 0; m < D; ++m) k += left[a](i, 3 * j + m) * row[b].gradient[m];
+              column[i] += k;
+            }
+            if (modulus > 0.0) column[j] += hold(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+          }
+        });
+      }
+    });
+  });
+  return K;
+}
+
+}  // namespace tactoid
