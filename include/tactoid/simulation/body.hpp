@@ -58,12 +58,15 @@ struct PointSample {
 ///
 /// The laws are matched to the regions of the cloud by name. Throws ParameterError for a parameter out of range or
 /// a region without a law, and GeometryError for a cloud that the kernel cannot sample.
-template <Kernel KernelType, Quadrature<KernelType> QuadratureType, class MaterialsType, class Director = NoDirector>
+template <class KernelType, class QuadratureType, class MaterialsType, class Director = NoDirector>
 class Body;
 
-template <Kernel KernelType, Quadrature<KernelType> QuadratureType, class... Ms, class Director>
+template <class KernelType, class QuadratureType, class... Ms, class Director>
 class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
  public:
+  // Asserted here and not on the template's parameters: so compilers print which requirement is missing.
+  static_assert(Kernel<KernelType>, "The third argument of a Body is a Kernel.");
+  static_assert(Quadrature<QuadratureType, KernelType>, "The fourth argument of a Body is a Quadrature for its kernel.");
   static constexpr int dimension = KernelType::dimension;
   static constexpr bool has_director = !std::is_same_v<Director, NoDirector>;
   static_assert(has_director || !(uses_director<LawOf<Ms>> || ...),
@@ -93,7 +96,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     force.assign(n, Vector4::Zero());
     chunk_totals_.resize(table_.chunks.size());
     chunk_stretch_.resize(table_.chunks.size());
-    chunk_failure_.resize(table_.chunks.size());
+    chunk_failure_.assign(table_.chunks.size(), no_failure);
     if constexpr (has_director) {
       if constexpr (std::is_same_v<Initial, Field>) this->director = initial;
       else this->director = initial_director(cloud_, initial);

@@ -83,36 +83,46 @@ struct StabilizationPower {
 /// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
 ///   r_J = u_J − u_I − (F_q − 1) ΔX_J,   energy ½ κ Σ_J w_J |r_J|²,   force from κ w_J (r_J + τ ṙ_J).
 /// Adds the pair forces to f, and subtracts from `flux` the part that acts through F_q. Damped: τ > 0, and v, dv count.
+/// Without periodic directions r_J = (u_J − H X_J) − (u_I − H X_I), which saves the differences of positions.
 template <bool Damped, bool Periodic>
 StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, double kappa, double tau, const Vector3& period,
                              const Vector4* X, const Vector4* u, const Vector4* v, const Gradient& du, const Gradient& dv,
                              Vector4* f, Gradient& flux) {
-  const Vector4 Xi = X[owner], ui = u[owner];
-  const Vector4 vi = Damped ? v[owner] : Vector4::Zero();
+  const Vector4& Xi = X[owner];
+  Vector4 ui = u[owner], vi = Damped ? v[owner] : Vector4::Zero();
+  if constexpr (!Periodic)
+    for (int K = 0; K < 3; ++K) {
+      ui -= Xi[K] * du.column[K];
+      if constexpr (Damped) vi -= Xi[K] * dv.column[K];
+    }
   Vector4 total = Vector4::Zero(), energy = Vector4::Zero(), rate = Vector4::Zero();
   Gradient moment;
   for (const TableEntry& entry : row) {
     const double w = kappa * static_cast<double>(entry.weight);
-    Vector4 dX = X[entry.particle] - Xi;
+    const double* XJ = X[entry.particle].data();
+    double x[3] = {XJ[0], XJ[1], XJ[2]};
     if constexpr (Periodic)
-      for (int k = 0; k < 3; ++k)
-        if (period[k] > 0.0) dX[k] -= period[k] * std::round(dX[k] / period[k]);
+      for (int k = 0; k < 3; ++k) {
+        x[k] -= Xi[k];
+        if (period[k] > 0.0) x[k] -= period[k] * std::round(x[k] / period[k]);
+      }
     Vector4 r = u[entry.particle] - ui;
-    for (int K = 0; K < 3; ++K) r -= dX[K] * du.column[K];
-    energy += w * r.cwiseAbs2();
+    for (int K = 0; K < 3; ++K) r -= x[K] * du.column[K];
+    Vector4 force = w * r;
+    energy += force.cwiseProduct(r);
     if constexpr (Damped) {
       Vector4 s = v[entry.particle] - vi;
-      for (int K = 0; K < 3; ++K) s -= dX[K] * dv.column[K];
-      rate += w * s.cwiseAbs2();
-      r += tau * s;
+      for (int K = 0; K < 3; ++K) s -= x[K] * dv.column[K];
+      const Vector4 ws = w * s;
+      rate += ws.cwiseProduct(s);
+      force += tau * ws;
     }
-    r *= w;
-    f[entry.particle] -= r;
-    total += r;
-    for (int K = 0; K < 3; ++K) moment.column[K] += dX[K] * r;
+    f[entry.particle] -= force;
+    total += force;
+    for (int K = 0; K < 3; ++K) moment.column[K] += x[K] * force;
   }
   f[owner] += total;
-  for (int K = 0; K < 3; ++K) flux.column[K] -= moment.column[K];
+  for (int K = 0; K < 3; ++K) flux.column[K] -= Periodic ? moment.column[K] : Vector4(moment.column[K] - Xi[K] * total);
   return {0.5 * energy.sum(), tau * rate.sum()};
 }
 
