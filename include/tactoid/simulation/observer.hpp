@@ -73,7 +73,8 @@ template <class F>
   return {interval, std::move(function)};
 }
 
-/// Calls `function(simulation)` after every `steps` steps; the times of the steps are not touched.
+/// Calls `function(simulation)` at the start, after every `steps` steps and at the end; the times of the steps are not
+/// touched.
 template <class F>
 class EverySteps {
  public:
@@ -89,7 +90,9 @@ class EverySteps {
     if (++count_ % steps_ == 0) function_(simulation);
   }
   template <class S>
-  void end(S& simulation) { function_(simulation); }
+  void end(S& simulation) {
+    if (count_ % steps_ != 0) function_(simulation);
+  }
   template <class S>
   void last_good_state(S& simulation) { function_(simulation); }
 
