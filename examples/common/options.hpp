@@ -76,10 +76,11 @@ class Options {
     entry.shown = fmt::format("{}", *value);
     entry.read = [value, range](std::string_view text, std::string_view where) {
       std::string_view digits = detail::trimmed(text);
+      if (digits.empty()) throw ParameterError(fmt::format("{}: the value is empty; a whole number is needed.", where));
       if (digits.starts_with('+')) digits.remove_prefix(1);
       Integer number{};
       const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-      const bool whole = read.ptr == digits.data() + digits.size() && !digits.empty();
+      const bool whole = read.ptr == digits.data() + digits.size();
       if (whole && read.ec == std::errc::result_out_of_range)
         throw ParameterError(fmt::format("{}: {} is outside the range of numbers.", where, in_quotes(text)));
       if (!whole || read.ec != std::errc{})

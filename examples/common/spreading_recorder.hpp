@@ -1,29 +1,60 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <tactoid/tactoid.hpp>
 
 namespace tactoid {
 
-/// Observes a simulation of a cell (body 0) on a substrate (body 1) and writes, in a folder, history.csv, the frames for
-/// ParaView (fields.pvd) and summary.json.
+/// Observes a simulation of a cell (body 0) on a substrate (body 1) and writes, in a folder, history.csv, the frames
+/// for ParaView (fields.pvd) and summary.json.
 class SpreadingRecorder {
  public:
   /// `cutoff`: gap below which the surface counts as spread, m.
   SpreadingRecorder(std::filesystem::path folder, double cutoff)
-      : folder_(std::move(folder)), cutoff_(cutoff), history_(folder_ / "history.csv", columns()), series_(folder_ / "fields.pvd") {
-    std::filesystem::create_directories(folder_ / "fields");
+      : folder_(std::move(folder)),
+        cutoff_(cutoff),
+        history_(folder_ / "history.csv", columns()),
+        series_(folder_ / "fields.pvd") {
+    prepare_folder(folder_ / "fields");
+    remove_old_frames();
   }
 
   static std::vector<std::string> columns() {
-    return {"time", "dt", "spread_area", "contact_radius", "front_modulation", "nucleus_effective_stress_mean",
-            "nucleus_effective_stress_max", "cell_effective_stress_max", "com_x", "com_y", "com_z", "contact_x", "contact_y",
-            "kinetic_energy", "strain_energy", "adhesion_energy", "surface_energy", "dissipated_energy", "external_work",
-            "energy_error", "momentum_x", "momentum_y", "momentum_z", "stabilization_energy", "gap_min"};
+    return {"time",
+            "dt",
+            "spread_area",
+            "contact_radius",
+            "front_modulation",
+            "nucleus_effective_stress_mean",
+            "nucleus_effective_stress_max",
+            "cell_effective_stress_max",
+            "com_x",
+            "com_y",
+            "com_z",
+            "contact_x",
+            "contact_y",
+            "kinetic_energy",
+            "strain_energy",
+            "adhesion_energy",
+            "surface_energy",
+            "dissipated_energy",
+            "external_work",
+            "energy_error",
+            "momentum_x",
+            "momentum_y",
+            "momentum_z",
+            "stabilization_energy",
+            "gap_min"};
   }
 
   /// One line of the history.
@@ -31,22 +62,43 @@ class SpreadingRecorder {
   void record(S& simulation) {
     const Timer timer(seconds_);
     measure(simulation);
-    const ParticleFields cell = simulation.template particles<0>(), substrate = simulation.template particles<1>();
+    const ParticleFields cell = simulation.template particles<0>();
     const StressFields stress = stress_fields(simulation.template body<0>());
     const PointTable& table = simulation.template body<0>().table();
     const RegionStatistics nucleus = region_statistics(table, stress.point_effective_stress, 0);
     double largest = 0.0;
     for (double s : stress.point_effective_stress) largest = std::max(largest, s);
     const ContactFront front = contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_);
-    const Motion a = motion(cell), b = motion(substrate);
+    const Motion a = motion<0>(simulation), b = motion<1>(simulation);
     const Vector3 momentum = a.momentum + b.momentum;
     const EnergyLedger& e = simulation.ledger();
     double smallest = std::numeric_limits<double>::infinity();
     for (double g : gaps_.gaps()) smallest = std::min(smallest, g);
-    last_ = {simulation.time(), simulation.last_time_step(), front.area, front.radius, front.modulation, nucleus.mean, nucleus.max,
-             largest, a.center_of_mass[0], a.center_of_mass[1], a.center_of_mass[2], front.centroid[0], front.centroid[1],
-             e.kinetic, e.strain + e.stabilization, e.adhesion, e.surface, e.dissipated, e.external_work, e.error(),
-             momentum[0], momentum[1], momentum[2], e.stabilization, smallest};
+    last_ = {simulation.time(),
+             simulation.last_time_step(),
+             front.area,
+             front.radius,
+             front.modulation,
+             nucleus.mean,
+             nucleus.max,
+             largest,
+             a.center_of_mass[0],
+             a.center_of_mass[1],
+             a.center_of_mass[2],
+             front.centroid[0],
+             front.centroid[1],
+             e.kinetic,
+             e.strain + e.stabilization,
+             e.adhesion,
+             e.surface,
+             e.dissipated,
+             e.external_work,
+             e.error(),
+             momentum[0],
+             momentum[1],
+             momentum[2],
+             e.stabilization,
+             smallest};
     history_.write(last_);
   }
 
@@ -60,9 +112,9 @@ class SpreadingRecorder {
     write<1>(simulation, "substrate_" + number + ".vtu", {});
   }
 
-  /// The final values under the names of the history, and what the run took.
+  /// The final values under the names of the history, what the run took, and whether it came to its end.
   template <class S>
-  void write_summary(S& simulation, double wall_seconds) const {
+  void write_summary(S& simulation, double wall_seconds, bool completed) const {
     Summary summary;
     const std::vector<std::string> names = columns();
     for (std::size_t i = 0; i < names.size(); ++i) summary.set(names[i], last_[i]);
@@ -75,6 +127,7 @@ class SpreadingRecorder {
     summary.set("ns_per_pair", visits > 0.0 ? 1e9 * (wall_seconds - seconds_) / visits : 0.0);
     summary.set("threads", thread_count());
     summary.set("version", version);
+    summary.set("completed", completed);
     summary.write(folder_ / "summary.json");
   }
 
@@ -88,6 +141,18 @@ class SpreadingRecorder {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   };
 
+  /// The frames of a former run in the same folder.
+  void remove_old_frames() const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "fields")) {
+      const std::string name = entry.path().filename().string();
+      const std::size_t digits = name.find_first_of("0123456789"), dot = name.find(".vtu");
+      if (dot == std::string::npos || dot + 4 != name.size() || digits >= dot) continue;
+      const std::string_view body = std::string_view(name).substr(0, digits);
+      if ((body == "cell_" || body == "substrate_") && name.find_first_not_of("0123456789", digits) == dot)
+        std::filesystem::remove(entry.path());
+    }
+  }
+
   template <class S>
   void measure(S& simulation) {
     const ParticleFields cell = simulation.template particles<0>(), substrate = simulation.template particles<1>();
@@ -100,7 +165,8 @@ class SpreadingRecorder {
   template <std::size_t B, class S>
   void write(S& simulation, const std::string& name, std::span<const double> gaps) {
     auto& body = simulation.template body<B>();
-    write_body_frame(folder_ / "fields" / name, body, simulation.template particles<B>(), stress_fields(body), simulation.time(), gaps);
+    write_body_frame(folder_ / "fields" / name, body, simulation.template particles<B>(), stress_fields(body),
+                     simulation.time(), gaps);
     series_.add(simulation.time(), "fields/" + name, body.name());
   }
 

@@ -19,7 +19,8 @@ int run(int argc, char** argv) {
   SpreadingParameters p;
   std::string out = "out/spreading_uniform";
   int threads = thread_count(), frames = 20, samples = 200;
-  Options options("spreading_uniform", "A cell adheres to and spreads on a uniform substrate (Zeng and Li, Soft Matter 2012, 8, 5765).");
+  Options options("spreading_uniform",
+                  "A cell adheres to and spreads on a uniform substrate (Zeng and Li, Soft Matter 2012, 8, 5765).");
   p.add_to(options);
   options.add("out", &out, "Folder of the results");
   options.add("threads", &threads, Range::between(1, 1024), "Threads");
@@ -30,20 +31,26 @@ int run(int argc, char** argv) {
 
   const auto start = std::chrono::steady_clock::now();
   PointCloud<3> substrate_cloud = p.substrate_cloud();
-  const auto bottom = select(substrate_cloud, [&](const Point<3>& X) { return X[2] < -p.substrate_height * (1.0 - 1e-9); });
+  const auto bottom =
+      select(substrate_cloud, [&](const Point<3>& X) { return X[2] < -p.substrate_height * (1.0 - 1e-9); });
   PointCloud<3> cell_cloud = p.cell_cloud();
   Field director = p.director_field(cell_cloud);
 
-  Body cell{"cell", std::move(cell_cloud), Rkpm<3>{.support = p.support}, p.quadrature(),
+  Body cell{"cell",
+            std::move(cell_cloud),
+            Rkpm<3>{.support = p.support},
+            p.quadrature(),
             Materials{Region{"nucleus", p.nucleus_law()}, Region{"cytoplasm", p.cytoplasm_law()}},
-            DirectorField<>{.diffusivity = p.diffusivity, .core_size = p.core_size}, std::move(director)};
+            DirectorField<>{.diffusivity = p.diffusivity, .core_size = p.core_size},
+            std::move(director)};
   Body substrate{"substrate", std::move(substrate_cloud), Rkpm<3>{.support = p.support}, p.quadrature(),
                  Materials{Region{"body", p.substrate_law(p.stiffness)}}};
-  Simulation simulation{Bodies{std::move(cell), std::move(substrate)},
-                        Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
-                                 between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30})},
-                        Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
-                        CentralDifference{.safety = p.safety, .time_step = p.time_step}};
+  Simulation simulation{
+      Bodies{std::move(cell), std::move(substrate)},
+      Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
+               between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30})},
+      Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
+      CentralDifference{.safety = p.safety, .time_step = p.time_step}};
 
   prepare_folder(out);
   options.write_toml(std::filesystem::path(out) / "parameters.toml");
@@ -54,17 +61,21 @@ int run(int argc, char** argv) {
              1e9 * simulation.largest_stable_time_step(), thread_count());
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const double setup = seconds();
-  auto finish = [&] { progress.finish(); recorder.write_summary(simulation, seconds() - setup); };
+  const auto finish = [&](bool completed) {
+    progress.finish();
+    recorder.write_summary(simulation, seconds() - setup, completed);
+  };
   try {
     simulation.run(p.end_time, every(p.end_time / samples, [&](auto& s) { recorder.record(s); }),
                    every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
                    every_steps(10, [&](auto& s) { progress.update(s.time(), s.steps()); }));
   } catch (const ComputationError&) {
-    finish();
+    finish(false);
     throw;
   }
-  finish();
-  fmt::print("{} steps in {:.1f} s (set-up {:.1f} s); results in {}\n", simulation.steps(), seconds() - setup, setup, out);
+  finish(true);
+  fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps(),
+             seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);
   return 0;
 }
 

@@ -2,3 +2,4 @@
 
 #include <tactoid/integrator/central_difference.hpp>
 #include <tactoid/integrator/integrator.hpp>
+#include <tactoid/integrator/static_newton.hpp>

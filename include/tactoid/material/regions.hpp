@@ -13,8 +13,10 @@
 namespace tactoid {
 
 /// The material of a named region of a point cloud.
-template <MaterialSource M>
+template <class M>
 struct Region {
+  static_assert(Material<typename detail::LawOf<M>::type>, "A Region is made of a Material or a Graded one.");
+
   std::string name;  ///< name of the region in PointCloud::regions
   M material;
 };
@@ -22,7 +24,7 @@ template <class Name, class M>
 Region(Name, M) -> Region<M>;
 
 /// The materials of a body: `Materials{Region{"nucleus", ModifiedMooneyRivlin{}}, Region{"cytoplasm", NematicGel{}}}`.
-template <MaterialSource... M>
+template <class... M>
 struct Materials {
   static_assert(sizeof...(M) > 0, "Materials needs at least one Region.");
   static constexpr std::size_t size = sizeof...(M);

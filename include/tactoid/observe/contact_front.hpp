@@ -16,40 +16,85 @@ namespace tactoid {
 
 /// Area of contact and its front, from the gaps at the surface particles.
 struct ContactFront {
-  double area = 0.0;                    ///< of the surface with gap < cutoff, projected on the substrate, m²
-  Vector3 centroid = Vector3::Zero();   ///< of that area, m; zero without contact
-  double radius = 0.0;                  ///< mean of the front's radius r(θ) around the centroid, m
-  std::vector<double> modes;            ///< amplitude of cos/sin m θ in r(θ) over `radius`, m = 0 … (modes[0] = 1)
-  double modulation = 0.0;              ///< root mean square of r(θ)/radius − 1 in the modes m >= 2
+  double area = 0.0;                   ///< of the surface with gap < cutoff, projected on the substrate, m²
+  Vector3 centroid = Vector3::Zero();  ///< of that area, m; zero without contact
+  Vector3 center = Vector3::Zero();    ///< of the area that the front encloses, pockets included, m
+  double radius = 0.0;                 ///< mean of the front's radius r(θ) around the center, m
+  std::vector<double> modes;           ///< amplitude of cos/sin m θ in r(θ) over `radius`, m = 0 … (modes[0] = 1)
+  double modulation = 0.0;             ///< root mean square of r(θ)/radius − 1 in the modes m >= 2
 };
 
-/// The outer front r(θ) in equal sectors of angle, from points (θ, r) of the contour: the outermost point of each
-/// sector, so that pockets under the cell do not count; sectors without a point are interpolated.
-[[nodiscard]] inline std::vector<double> outer_front(const std::vector<std::array<double, 2>>& polar, std::size_t sectors) {
-  std::vector<double> r(sectors, 0.0);
-  for (const auto& [angle, distance] : polar) {
-    const double turn = angle / (2.0 * std::numbers::pi) + 0.5;
-    const auto sector = static_cast<std::size_t>(turn * static_cast<double>(sectors)) % sectors;
-    r[sector] = std::max(r[sector], distance);
+/// The outer front r(θ_k), θ_k = 2π k/n, around a point: the outermost crossing of each of n rays with the segments of
+/// the contour, so that pockets under the cell do not count. Rays without a crossing are interpolated from their
+/// neighbours; empty where no ray crosses the contour.
+[[nodiscard]] inline std::vector<double> outer_front(const std::vector<std::array<Point<2>, 2>>& contour,
+                                                     const Point<2>& center, std::size_t rays) {
+  const double sector = 2.0 * std::numbers::pi / static_cast<double>(rays);
+  std::vector<double> r(rays, 0.0);
+  bool crossed = false;
+  for (const auto& segment : contour) {
+    const Point<2> a = segment[0] - center, d = segment[1] - segment[0];
+    const double cross = a[0] * d[1] - a[1] * d[0];
+    const double from = std::atan2(a[1], a[0]);
+    // The segment turns by less than π around the center, in the sense of the sign of `cross`.
+    const double turn = std::atan2(cross, a.squaredNorm() + a.dot(d));
+    const auto first = static_cast<long>(std::ceil(std::min(from, from + turn) / sector));
+    const auto last = static_cast<long>(std::floor(std::max(from, from + turn) / sector));
+    for (long k = first; k <= last; ++k) {
+      const double angle = sector * static_cast<double>(k);
+      const double divisor = std::cos(angle) * d[1] - std::sin(angle) * d[0];
+      // No crossing lies beyond the segment's ends, whatever the round-off of a segment along the ray.
+      const double end = std::max(a.norm(), (a + d).norm());
+      const double distance = divisor == 0.0 ? end : std::min(cross / divisor, end);
+      double& ray = r[static_cast<std::size_t>((k % static_cast<long>(rays) + static_cast<long>(rays)) %
+                                               static_cast<long>(rays))];
+      ray = std::max(ray, distance);
+      crossed = true;
+    }
   }
+  if (!crossed) return {};
   std::vector<double> filled = r;
-  for (std::size_t k = 0; k < sectors; ++k) {
+  for (std::size_t k = 0; k < rays; ++k) {
     if (r[k] > 0.0) continue;
     std::size_t before = 1, after = 1;
-    while (before < sectors && r[(k + sectors - before) % sectors] == 0.0) ++before;
-    while (after < sectors && r[(k + after) % sectors] == 0.0) ++after;
+    while (before < rays && r[(k + rays - before) % rays] == 0.0) ++before;
+    while (after < rays && r[(k + after) % rays] == 0.0) ++after;
     const double w = static_cast<double>(before) / static_cast<double>(before + after);
-    filled[k] = (1.0 - w) * r[(k + sectors - before) % sectors] + w * r[(k + after) % sectors];
+    filled[k] = (1.0 - w) * r[(k + rays - before) % rays] + w * r[(k + after) % rays];
   }
   return filled;
 }
+
+/// Centroid of the polygon with the corners center + r_k (cos θ_k, sin θ_k).
+[[nodiscard]] inline Point<2> front_centroid(const std::vector<double>& r, const Point<2>& center) {
+  const double sector = 2.0 * std::numbers::pi / static_cast<double>(r.size());
+  double area = 0.0;
+  Point<2> moment = Point<2>::Zero();
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double angle = sector * static_cast<double>(k), next = r[(k + 1) % r.size()];
+    const Point<2> a(r[k] * std::cos(angle), r[k] * std::sin(angle));
+    const Point<2> b(next * std::cos(angle + sector), next * std::sin(angle + sector));
+    const double twice = a[0] * b[1] - a[1] * b[0];
+    area += twice;
+    moment += twice / 3.0 * (a + b);
+  }
+  return area > 0.0 ? Point<2>(center + moment / area) : center;
+}
+
+namespace detail {
+/// A unit vector normal to `up`: x, unless that is nearly along `up`.
+[[nodiscard]] inline Vector3 in_plane_axis(const Vector3& up) {
+  const Vector3 x = std::abs(up[0]) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
+  return (x - x.dot(up) * up).normalized();
+}
+}  // namespace detail
 
 /// Cuts the facets of a surface along the contour gap = cutoff, so that the area is continuous in time. Each
 /// bilinear facet is four triangles around its centre. `gaps`: signed gap per particle; `up`: unit normal of the
 /// substrate, on which areas are projected: facets that face the substrate count.
 [[nodiscard]] inline ContactFront contact_front(const FacetSurface<3>& surface, std::span<const Vector4> position,
-                                                std::span<const double> gaps, double cutoff, const Vector3& up = Vector3::UnitZ(),
-                                                int modes = 16) {
+                                                std::span<const double> gaps, double cutoff,
+                                                const Vector3& up = Vector3::UnitZ(), int modes = 16) {
   struct Corner {
     Vector3 x;
     double g;  // gap − cutoff
@@ -97,26 +142,34 @@ struct ContactFront {
     return front;
   }
   front.centroid /= front.area;
-  const std::size_t sectors = 4 * static_cast<std::size_t>(modes) + 8;
-  const Vector3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
-  std::vector<std::array<double, 2>> polar;
-  for (const auto& segment : contour)
-    for (const Vector3& x : segment) {
-      const Vector3 d = x - front.centroid;
-      polar.push_back({std::atan2(d.dot(e2), d.dot(e1)), std::hypot(d.dot(e1), d.dot(e2))});
-    }
-  if (polar.size() < 3) return front;
-  const std::vector<double> r = outer_front(polar, sectors);
+  // In the plane of the substrate.
+  const Vector3 e1 = detail::in_plane_axis(up), e2 = up.cross(e1);
+  const auto project = [&](const Vector3& x) { return Point<2>(x.dot(e1), x.dot(e2)); };
+  std::vector<std::array<Point<2>, 2>> plane;
+  for (const auto& segment : contour) plane.push_back({project(segment[0]), project(segment[1])});
+  const std::size_t rays = 16 * static_cast<std::size_t>(modes) + 8;
+  const Point<2> start = project(front.centroid);
+  Point<2> center = start;
+  std::vector<double> r = outer_front(plane, center, rays);
+  front.center = front.centroid;
+  if (r.empty()) return front;
+  for (int pass = 0; pass < 4; ++pass) {
+    center = front_centroid(r, center);
+    r = outer_front(plane, center, rays);
+    if (r.empty()) return front;
+  }
+  front.center += (center[0] - start[0]) * e1 + (center[1] - start[1]) * e2;
   auto amplitude = [&](int m) {
     double a = 0.0, b = 0.0;
-    for (std::size_t k = 0; k < sectors; ++k) {
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(sectors);
+    for (std::size_t k = 0; k < rays; ++k) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(rays);
       a += r[k] * std::cos(m * angle);
       b += r[k] * std::sin(m * angle);
     }
-    return 2.0 * std::hypot(a, b) / static_cast<double>(sectors);
+    return 2.0 * std::hypot(a, b) / static_cast<double>(rays);
   };
   front.radius = 0.5 * amplitude(0);
+  if (!(front.radius > 0.0)) return front;
   front.modes[0] = 1.0;
   double sum = 0.0;
   for (int m = 1; m <= modes; ++m) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include <tactoid/core/tensor.hpp>
@@ -7,26 +9,43 @@
 
 namespace tactoid {
 
-/// Momentum, angular momentum about the origin and centre of mass of particles.
+/// Momentum, angular momentum about the origin and centre of mass of a body.
 struct Motion {
-  double mass = 0.0;                            ///< kg
-  Vector3 momentum = Vector3::Zero();           ///< kg m/s
-  Vector3 angular_momentum = Vector3::Zero();   ///< kg m²/s, about the origin
-  Vector3 center_of_mass = Vector3::Zero();     ///< m
+  double mass = 0.0;                           ///< kg
+  Vector3 momentum = Vector3::Zero();          ///< kg m/s
+  Vector3 angular_momentum = Vector3::Zero();  ///< kg m²/s, about the origin
+  Vector3 center_of_mass = Vector3::Zero();    ///< m
 };
 
-/// Of value-based bodies, whose lumped masses sit at the particles. Sums run in the order of the particles.
-[[nodiscard]] inline Motion motion(const ParticleFields& body) {
+/// From lumped masses, the reference positions of the particles, and the unknowns: values at the particles, or
+/// coefficients (the sums are those of the fields, since shape functions reproduce the position). Sums run in the
+/// order of the particles.
+[[nodiscard]] inline Motion motion(std::span<const double> mass, std::span<const Vector4> reference,
+                                   std::span<const Vector4> displacement, std::span<const Vector4> velocity) {
   Motion m;
-  for (std::size_t i = 0; i < body.mass.size(); ++i) {
-    const Vector3 x = body.position[i].head<3>(), p = body.mass[i] * body.velocity[i].head<3>();
-    m.mass += body.mass[i];
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const Vector3 x = reference[i].head<3>() + displacement[i].head<3>(), p = mass[i] * velocity[i].head<3>();
+    m.mass += mass[i];
     m.momentum += p;
     m.angular_momentum += Vector3(x[1] * p[2] - x[2] * p[1], x[2] * p[0] - x[0] * p[2], x[0] * p[1] - x[1] * p[0]);
-    m.center_of_mass += body.mass[i] * x;
+    m.center_of_mass += mass[i] * x;
   }
   m.center_of_mass /= m.mass;
   return m;
+}
+
+/// Of a value-based body, from the values at its particles.
+[[nodiscard]] inline Motion motion(const ParticleFields& body) {
+  Field displacement(body.mass.size());
+  for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = body.position[i] - body.reference[i];
+  return motion(body.mass, body.reference, displacement, body.velocity);
+}
+
+/// Of body N of a simulation, at the present instant.
+template <std::size_t N, class S>
+[[nodiscard]] Motion motion(const S& simulation) {
+  const auto& body = simulation.template body<N>();
+  return motion(body.masses(), body.table().particle_position, body.displacement, simulation.template velocity<N>());
 }
 
 }  // namespace tactoid

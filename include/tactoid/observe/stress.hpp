@@ -59,7 +59,8 @@ struct RegionStatistics {
   double mean = 0.0;
   double max = 0.0;
 };
-[[nodiscard]] inline RegionStatistics region_statistics(const PointTable& table, const std::vector<double>& at_points, Index region) {
+[[nodiscard]] inline RegionStatistics region_statistics(const PointTable& table, const std::vector<double>& at_points,
+                                                        Index region) {
   RegionStatistics r;
   double volume = 0.0;
   for (std::size_t q = 0; q < table.points(); ++q) {

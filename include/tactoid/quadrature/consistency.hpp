@@ -134,13 +134,14 @@ inline ConsistencyReport make_consistent(PointTable& table, std::span<const doub
   const detail::AffineResidual S(table, weights);
   const std::size_t n = table.particles;
   Field residual = boundary;
-  std::vector<double> diagonal(n, 0.0);
+  std::vector<double> diagonal(n, 0.0), gross(n, 0.0);  // gross: sums of the sizes of what Σ V G adds
   Vector4 size = Vector4::Zero();
   for (std::size_t q = 0; q < table.points(); ++q)
     for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e) {
       const TableEntry& entry = table.entries[e];
       const Vector4 g(entry.gradient[0], entry.gradient[1], entry.gradient[2], 0.0);
       residual[entry.particle] -= table.volume[q] * g;
+      gross[entry.particle] += table.volume[q] * g.norm();
       diagonal[entry.particle] += S.diagonal(q, e);
       size += g.cwiseAbs2();
     }
@@ -148,7 +149,7 @@ inline ConsistencyReport make_consistent(PointTable& table, std::span<const doub
   const Vector4 initial = detail::componentwise_dot(residual, residual);
   // Round-off of the sums b and Σ V G themselves: below it there is nothing to correct.
   double floor = 0.0;
-  for (std::size_t i = 0; i < n; ++i) floor = std::max(floor, boundary[i].norm());
+  for (std::size_t i = 0; i < n; ++i) floor = std::max(floor, std::max(gross[i], boundary[i].norm()));
   floor = 1e-30 * floor * floor * static_cast<double>(n);
   auto precondition = [&] {
     for (std::size_t i = 0; i < n; ++i) {

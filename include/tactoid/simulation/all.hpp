@@ -5,3 +5,5 @@
 #include <tactoid/simulation/observer.hpp>
 #include <tactoid/simulation/placement.hpp>
 #include <tactoid/simulation/simulation.hpp>
+#include <tactoid/simulation/static_problem.hpp>
+#include <tactoid/simulation/stiffness.hpp>

@@ -50,11 +50,11 @@ class Every {
     call(simulation);
   }
   template <class S>
-  void end(S& simulation) {
+  void end(S& simulation) {  // unless it was called at this time already
     if (simulation.time() > called_) call(simulation);
   }
   template <class S>
-  void last_good_state(S& simulation) { call(simulation); }
+  void last_good_state(S& simulation) { end(simulation); }
 
  private:
   template <class S>

@@ -189,6 +189,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     step_before_ = last_step_;
     time_ += time_step;
     last_step_ = time_step;
+    drifted_ = true;
   }
 
   /// Forces and energies at the present state; histories and directors are advanced by the last step.
@@ -240,6 +241,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     external_power_ = external_power;
     dissipated_power_ = dissipated_power;
     if (last_step_ > 0.0) ledger_.note_scale();
+    drifted_ = false;
   }
 
  private:
@@ -297,7 +299,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
                  "evaluated outside its range"));
   }
 
+  /// Undoes the drift of a step whose evaluation broke down.
   void restore() {
+    if (!drifted_) return;
+    drifted_ = false;
     for_each_body([&](auto& body, std::size_t b) {
       body.displacement = previous_[b];
       if (!previous_velocity_[b].empty()) body.velocity = previous_velocity_[b];
@@ -322,6 +327,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   double external_power_ = 0.0, dissipated_power_ = 0.0;  // of contacts and boundary terms at the last evaluation, W
   double time_ = 0.0, last_step_ = 0.0, step_before_ = 0.0;
   std::size_t steps_ = 0;
+  bool drifted_ = false;  // displacements have moved on, forces have not
 };
 
 template <class... B, class... C, class... T, class I>

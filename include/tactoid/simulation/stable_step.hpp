@@ -3,27 +3,44 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <tactoid/core/tensor.hpp>
+#include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/simulation/body.hpp>
 
 namespace tactoid {
 
-/// The largest stable step of a body. The highest frequency of the discrete body at its first state is found by
-/// power iteration on the internal forces; it calibrates a bound per point, ω_q² = r c² k_q² ‖F_q⁻¹‖², which follows
-/// the deformation at no cost. For a point with the frequency ω and the rate of damping ν k² (viscosity, damping of
-/// the stabilisation) that sees the velocity half a step late, the step is stable for ω² Δt² + 2 ν k² Δt <= 4.
+/// The largest stable step of a body. At the first state, power iterations find
+///   - the largest squared wave number of each region's rows alone, from the scalar operator M⁻¹ Σ_q V_q ρ G_q G_qᵀ,
+///   - the highest frequency of the body, from its internal forces, and the fastest decay of its viscous ones.
+/// They calibrate bounds per point, ω_q² ∝ c² k_q² ‖F_q⁻¹‖² and d_q ∝ ν k_q² ‖F_q⁻¹‖² (viscosity, and damping of the
+/// stabilisation), which follow the deformation at no cost. Since forces see the velocity half a step late, the step is
+/// stable for ω² Δt² + 2 d Δt <= 4.
 class StableStep {
  public:
   template <class Body>
   void calibrate(Body& body) {
-    const double frequency_squared = largest_eigenvalue(body);
-    body.force.assign(body.size(), Vector4::Zero());
-    body.add_internal_forces(0.0, false);
-    const std::vector<double> waves = body.region_wave_numbers();
-    double bound = 0.0;
-    body.for_each_region([&](const auto& region, Index r) { bound = std::max(bound, region.wave_speed_squared * waves[r]); });
-    ratio_ = bound > 0.0 ? frequency_squared / bound : 1.0;
+    const Field present = body.displacement;
+    body.displacement.assign(body.size(), Vector4::Zero());
+    const std::vector<double> reference = wave_numbers(body);
+    ratio_.assign(reference.size(), 1.0);
+    body.for_each_region([&](const auto& region, Index r) {
+      if (reference[r] > 0.0) ratio_[r] = largest_wave_number(body, region, r) / reference[r];
+    });
+    body.displacement = present;
+    const std::vector<double> waves = wave_numbers(body);
+    double elastic = 0.0, viscous = 0.0;  // ω² and d of the regions, as the wave numbers have it
+    body.for_each_region([&](const auto& region, Index r) {
+      elastic = std::max(elastic, region.wave_speed_squared * ratio_[r] * waves[r]);
+      viscous = std::max(viscous, diffusivity(region) * ratio_[r] * waves[r]);
+    });
+    const double frequency_squared = largest_eigenvalue(body, body.displacement, 1.0);
+    elastic_ = elastic > 0.0 ? frequency_squared / elastic : 1.0;
+    viscous_ = 1.0;
+    // Velocities are tried at the size that the tried displacements have at the highest frequency.
+    if (viscous > 0.0 && frequency_squared > 0.0)
+      viscous_ = largest_eigenvalue(body, body.velocity, std::sqrt(frequency_squared)) / viscous;
   }
 
   /// Largest stable step at the present state; `term_rate` is ω² of what acts on the body's particles, 1/s².
@@ -32,16 +49,15 @@ class StableStep {
     const std::vector<double> waves = body.region_wave_numbers();
     double step = std::numeric_limits<double>::infinity();
     body.for_each_region([&](const auto& region, Index r) {
-      const double k2 = ratio_ * waves[r];
-      const double omega2 = region.wave_speed_squared * k2 + term_rate;
-      const double stabilization = region.stabilization.modulus * region.stabilization.damping_time / region.laws.front().density;
-      const double damping = (region.kinematic_viscosity + 2.0 * stabilization) * k2;
+      const double k2 = ratio_[r] * waves[r];
+      const double omega2 = elastic_ * region.wave_speed_squared * k2 + term_rate;
+      const double damping = viscous_ * diffusivity(region) * k2;
       if (omega2 > 0.0) step = std::min(step, (std::sqrt(damping * damping + 4.0 * omega2) - damping) / omega2);
     });
     if constexpr (Body::has_director) {
       // Explicit diffusion and penalty of the director: D (k² + 2/ε_d²) Δt <= 2.
       double k2 = 0.0;
-      for (double w : waves) k2 = std::max(k2, ratio_ * w);
+      for (std::size_t r = 0; r < waves.size(); ++r) k2 = std::max(k2, ratio_[r] * waves[r]);
       const auto& law = body.director_law();
       step = std::min(step, 2.0 / (law.diffusivity * (k2 + 2.0 / (law.core_size * law.core_size))));
     }
@@ -49,12 +65,83 @@ class StableStep {
   }
 
  private:
-  /// Largest eigenvalue of M⁻¹K at the present state, from differences of the internal forces; 1/s².
+  /// Of velocities, by viscosity and by the damping of the stabilisation, m²/s.
+  template <class Region>
+  [[nodiscard]] static double diffusivity(const Region& region) {
+    const Stabilization& s = region.stabilization;
+    return region.kinematic_viscosity + 2.0 * s.modulus * s.damping_time / region.laws.front().density;
+  }
+
+  /// Of the points of each region alone, at the present displacement, 1/m².
   template <class Body>
-  static double largest_eigenvalue(Body& body) {
-    const Field start = body.displacement, velocity = body.velocity;
+  [[nodiscard]] static std::vector<double> wave_numbers(Body& body) {
+    body.force.assign(body.size(), Vector4::Zero());
+    body.add_internal_forces(0.0, false);
+    return body.region_wave_numbers();
+  }
+
+  /// An arbitrary start of a power iteration: nothing is orthogonal to it.
+  [[nodiscard]] static double arbitrary(std::size_t i) {
+    return std::sin(12.9898 * static_cast<double>(i + 1) * 1.61803398875);
+  }
+
+  /// Calls multiply(), which applies the operator to a mode and returns its Rayleigh quotient, until that settles. It
+  /// approaches the largest eigenvalue from below.
+  template <class Multiply>
+  [[nodiscard]] static double power_iteration(const Multiply& multiply) {
+    double eigenvalue = 0.0;
+    for (int iteration = 0; iteration < 60; ++iteration) {
+      const double next = multiply();
+      const bool settled = std::abs(next - eigenvalue) < 1e-3 * std::abs(next);
+      eigenvalue = next;
+      if (!(next > 0.0) || (settled && iteration > 8)) break;
+    }
+    return 1.02 * std::max(eigenvalue, 0.0);
+  }
+
+  /// Largest eigenvalue of M⁻¹ Σ_q V_q ρ G_q G_qᵀ over the points of region r, in the reference configuration; 1/m².
+  template <class Body, class Region>
+  [[nodiscard]] static double largest_wave_number(const Body& body, const Region& region, Index r) {
+    const PointTable& table = body.table();
+    const std::size_t n = body.size();
+    std::vector<double> mode(n), result(n);
+    for (std::size_t i = 0; i < n; ++i) mode[i] = arbitrary(i);
+    return power_iteration([&] {
+      double largest = 0.0;
+      for (const double m : mode) largest = std::max(largest, std::abs(m));
+      if (!(largest > 0.0)) return 0.0;
+      for (double& m : mode) m /= largest;
+      std::fill(result.begin(), result.end(), 0.0);
+      for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
+        if (chunk.region != r) return;
+        for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
+          Vector3 gradient = Vector3::Zero();
+          for (const TableEntry& entry : table.row(q))
+            gradient += mode[entry.particle] * Eigen::Map<const Vector3>(entry.gradient);
+          gradient *= table.volume[q] * region.law(q).density;
+          for (const TableEntry& entry : table.row(q))
+            result[entry.particle] += gradient.dot(Eigen::Map<const Vector3>(entry.gradient));
+        }
+      });
+      double mm = 0.0, mk = 0.0;
+      for (std::size_t i = 0; i < n; ++i) {
+        mm += body.masses()[i] * mode[i] * mode[i];
+        mk += mode[i] * result[i];
+        mode[i] = result[i] / body.masses()[i];
+      }
+      return mk / mm;
+    });
+  }
+
+  /// Largest eigenvalue of the derivative of −M⁻¹ f in `field`, which is the body's displacement (1/s²) or velocity
+  /// (1/s), at the present displacement and no velocity, from differences of the internal forces. The difference in
+  /// `field` is 1e-6 of the smallest spacing times `rate`.
+  template <class Body>
+  [[nodiscard]] static double largest_eigenvalue(Body& body, Field& field, double rate) {
+    const Field displacement = body.displacement, velocity = body.velocity;
     const std::size_t n = body.size();
     std::fill(body.velocity.begin(), body.velocity.end(), Vector4::Zero());
+    const Field start = field;
     auto internal_forces = [&] {
       std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
       body.add_internal_forces(0.0, false);
@@ -63,20 +150,18 @@ class StableStep {
     const Field rest = internal_forces();
     Field mode(n, Vector4::Zero());
     for (std::size_t i = 0; i < n; ++i)
-      for (int k = 0; k < Body::dimension; ++k)
-        mode[i][k] = std::sin(12.9898 * static_cast<double>(3 * i + static_cast<std::size_t>(k) + 1) * 1.61803398875);
+      for (int k = 0; k < Body::dimension; ++k) mode[i][k] = arbitrary(3 * i + static_cast<std::size_t>(k));
     double length = std::numeric_limits<double>::infinity();
     for (std::size_t q = 0; q < body.table().points(); ++q)
       length = std::min(length, std::pow(body.table().volume[q], 1.0 / Body::dimension));
-    const double size = 1e-6 * length;  // amplitude of the perturbation, m
-    double eigenvalue = 0.0;
-    for (int iteration = 0; iteration < 60; ++iteration) {
+    const double size = 1e-6 * length * rate;
+    const double eigenvalue = power_iteration([&] {
       double largest = 0.0;
       for (const Vector4& m : mode) largest = std::max(largest, m.cwiseAbs().maxCoeff());
-      if (!(largest > 0.0)) break;
+      if (!(largest > 0.0)) return 0.0;
       for (std::size_t i = 0; i < n; ++i) {
         mode[i] /= largest;
-        body.displacement[i] = start[i] + size * mode[i];
+        field[i] = start[i] + size * mode[i];
       }
       const Field force = internal_forces();
       double mm = 0.0, mk = 0.0;
@@ -86,18 +171,16 @@ class StableStep {
         mk += mode[i].dot(K_mode);
         mode[i] = K_mode / body.masses()[i];
       }
-      const double next = mk / mm;
-      const bool settled = std::abs(next - eigenvalue) < 1e-3 * std::abs(next);
-      eigenvalue = next;
-      if (settled && iteration > 8) break;
-    }
-    body.displacement = start;
+      return mk / mm;
+    });
+    body.displacement = displacement;
     body.velocity = velocity;
-    // The Rayleigh quotient approaches the eigenvalue from below.
-    return 1.02 * std::max(eigenvalue, 0.0);
+    (void)wave_numbers(body);  // which the body remembers
+    return eigenvalue;
   }
 
-  double ratio_ = 1.0;
+  std::vector<double> ratio_;             // per region: largest k² of the body over the largest of a point alone
+  double elastic_ = 1.0, viscous_ = 1.0;  // measured over c² k² and over ν k²
 };
 
 }  // namespace tactoid

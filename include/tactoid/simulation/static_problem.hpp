@@ -33,7 +33,8 @@ class StaticProblem {
       : body_(body), terms_(std::move(terms)...) {
     static_assert((BoundaryTerm<Terms, dimension> && ...), "A StaticProblem takes BoundaryTerms after its conditions.");
     std::fill(body_.velocity.begin(), body_.velocity.end(), Vector4::Zero());
-    essential_ = EssentialConditions(std::move(motions), body_.particle_values(), body_.table().particle_position, body_.masses());
+    essential_ = EssentialConditions(std::move(motions), body_.particle_values(), body_.table().particle_position,
+                                     body_.masses());
     fields_.prepare(body_);
     fields_.refresh(body_, 0.0);
     std::apply([&](auto&... term) { (term.initialize(body_.cloud(), fields_.view()), ...); }, terms_);
@@ -84,7 +85,8 @@ class StaticProblem {
   [[nodiscard]] Eigen::VectorXd defect() const { return defect_target_ - conditions_ * unknowns(); }
   void move(const Eigen::VectorXd& du) {
     for (std::size_t i = 0; i < body_.size(); ++i)
-      body_.displacement[i].template head<dimension>() += du.segment<dimension>(static_cast<Eigen::Index>(dimension * i));
+      body_.displacement[i].template head<dimension>() +=
+          du.segment<dimension>(static_cast<Eigen::Index>(dimension * i));
   }
   void set_multipliers(const Eigen::VectorXd& multipliers) {
     std::fill(reactions_.begin(), reactions_.end(), Vector3::Zero());
@@ -95,7 +97,9 @@ class StaticProblem {
 
  private:
   template <class Term>
-  void add_term(Term& term) { term_energy_ += term.apply(fields_.view(), 0.0); }
+  void add_term(Term& term) {
+    term_energy_ += term.apply(fields_.view(), 0.0);
+  }
 
   [[nodiscard]] Eigen::VectorXd unknowns() const { return flat(body_.displacement); }
 

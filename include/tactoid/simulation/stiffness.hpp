@@ -49,7 +49,8 @@ template <int D>
 
 /// The law's history at one lane of a block.
 template <class Law, class T>
-[[nodiscard]] tactoid::HistoryOf<Law, double> history_at_lane(const tactoid::HistoryOf<Law, T>& block, [[maybe_unused]] int l) {
+[[nodiscard]] tactoid::HistoryOf<Law, double> history_at_lane(const tactoid::HistoryOf<Law, T>& block,
+                                                              [[maybe_unused]] int l) {
   tactoid::HistoryOf<Law, double> one;
   if constexpr (history_size<Law> > 0) {
     tactoid::HistoryOf<Law, T> copy = block;
@@ -131,7 +132,8 @@ template <class Body>
           state.director_gradient.col(k) = dh.column[k].template head<3>();
         }
         const int l = static_cast<int>((q - region.begin) % static_cast<std::size_t>(region.width));
-        const auto history = detail::history_at_lane<Law, typename std::decay_t<decltype(region)>::Scalar>(region.histories[region.block(q)], l);
+        const auto history = detail::history_at_lane<Law, typename std::decay_t<decltype(region)>::Scalar>(
+            region.histories[region.block(q)], l);
         const Tangent A = tangent(region.law(q), state, history);
         std::vector<Eigen::Matrix<double, D, 9>> left(row.size());  // V G_a · A
         for (std::size_t a = 0; a < row.size(); ++a)
@@ -144,7 +146,8 @@ template <class Body>
           hold = detail::stabilization_stiffness(table, q, row.size(), modulus * table.stabilization_scale[q]);
         detail::for_each_block<D>(K, row, [&](std::size_t a, std::size_t b, int place) {
           for (int j = 0; j < D; ++j) {
-            double* column = K.valuePtr() + K.outerIndexPtr()[static_cast<Eigen::Index>(D * row[b].particle) + j] + place;
+            double* column =
+                K.valuePtr() + K.outerIndexPtr()[static_cast<Eigen::Index>(D * row[b].particle) + j] + place;
             for (int i = 0; i < D; ++i) {
               double k = 0.0;
               for (int m = 0; m < D; ++m) k += left[a](i, 3 * j + m) * row[b].gradient[m];

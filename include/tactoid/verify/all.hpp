@@ -2,3 +2,4 @@
 
 #include <tactoid/verify/gate_report.hpp>
 #include <tactoid/verify/material_gate.hpp>
+#include <tactoid/verify/patch_test.hpp>

@@ -1,0 +1,168 @@
+// Essential conditions hold on the interpolated field, in statics and in motion, and their reactions are right.
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include <tactoid/boundary/body_force.hpp>
+#include <tactoid/geometry/all.hpp>
+#include <tactoid/integrator/all.hpp>
+#include <tactoid/kernel/all.hpp>
+#include <tactoid/material/modified_mooney_rivlin.hpp>
+#include <tactoid/quadrature/all.hpp>
+#include <tactoid/simulation/all.hpp>
+
+using namespace tactoid;
+
+namespace {
+
+constexpr double length = 2e-6, height = 1e-6;
+const ModifiedMooneyRivlin law{};
+
+template <class Quadrature>
+auto plate(Quadrature rule) {
+  return Body{"plate", jitter(rectangle({.size = {length, height}, .cells = {10, 5}}), 0.15), Rkpm<2>{}, rule,
+              Materials{Region{"body", law}}};
+}
+NodalCentroids undamped() {
+  return {.solid_damping_time = 0.0};
+}
+
+std::vector<Index> side(const PointCloud<2>& cloud, int k, double at) {
+  return select(cloud, [=](const Point<2>& X) { return std::abs(X[k] - at) < 1e-12; });
+}
+
+/// Left side held, right side pulled along x, top and bottom guided along x: uniaxial strain.
+std::vector<PrescribedMotion> pull(const PointCloud<2>& cloud, double by) {
+  std::vector<Index> guides = side(cloud, 1, 0.0);
+  for (Index i : side(cloud, 1, height)) guides.push_back(i);
+  return {
+      fixed(side(cloud, 0, 0.0), {true, false, false}),
+      {side(cloud, 0, length), [by](const Vector3&, double) { return Vector3(by, 0.0, 0.0); }, {true, false, false}},
+      fixed(guides, {false, true, false})};
+}
+
+/// Largest error of the conditions at the particles, on the interpolated field, m.
+template <class Body>
+double error_of(const Body& body, const std::vector<PrescribedMotion>& motions, double time) {
+  const Field u = body.at_particles(body.displacement);
+  double error = 0.0;
+  for (const PrescribedMotion& motion : motions)
+    for (Index i : motion.particles)
+      for (int c = 0; c < 2; ++c)
+        if (motion.components[static_cast<std::size_t>(c)])
+          error = std::max(
+              error, std::abs(u[i][c] - motion.value(body.table().particle_position[i].template head<3>(), time)[c]));
+  return error;
+}
+
+template <class Body>
+void check_statics(Body body, double reaction_tolerance) {
+  const double by = 0.2 * length;
+  const auto motions = pull(body.cloud(), by);
+  StaticProblem problem(body, motions);
+  const StaticReport report = StaticNewton{.load_steps = 2}.solve(problem);
+  CHECK(report.load_steps == 2);
+  CHECK(error_of(body, motions, 0.0) < 1e-10 * by);
+  Tensor3 F = Tensor3::Identity();
+  F(0, 0) += by / length;
+  const double force = law.first_piola(F)(0, 0) * height;
+  CHECK(problem.reaction(1)[0] == doctest::Approx(force).epsilon(reaction_tolerance).scale(0.0));
+  CHECK(std::abs(problem.reaction(0)[0] + problem.reaction(1)[0]) < 1e-9 * force);
+  MESSAGE("static reaction over stress × area: " << problem.reaction(1)[0] / force << ", " << report.iterations
+                                                 << " iterations");
+}
+
+template <class Body>
+void check_motion(Body start) {
+  const double size = 0.02 * length, period = 4.0 * length / law.wave_speed();
+  const auto motions = [&] {
+    const auto& cloud = start.cloud();
+    std::vector<PrescribedMotion> list = {fixed(side(cloud, 0, 0.0)), {side(cloud, 0, length), {}, {true, true, true}}};
+    list[1].displacement = [=](const Vector3&, double t) {
+      const double phase = 2.0 * std::numbers::pi * t / period;
+      return Vector3(size * (1.0 - std::cos(phase)), 0.5 * size * std::sin(phase), 0.0);
+    };
+    return list;
+  }();
+  Simulation simulation{Bodies{std::move(start)}, Contacts{}, Boundaries{on<0>(motions[0]), on<0>(motions[1])},
+                        CentralDifference{.safety = 0.4}};
+  const auto& body = simulation.template body<0>();
+  const auto momentum = [&] {
+    Vector3 p = Vector3::Zero();
+    for (std::size_t i = 0; i < body.size(); ++i) p += body.masses()[i] * body.velocity[i].template head<3>();
+    return p;
+  };
+  Vector3 before = momentum();
+  double step_before = 0.0, error = 0.0, balance = 0.0, largest = 0.0;
+  simulation.run(1.3 * period, every_steps(1, [&](auto& s) {
+                   if (s.last_time_step() == 0.0 || s.time() >= 1.3 * period) return;
+                   error = std::max(error, error_of(body, motions, s.time()));
+                   const Vector3 now = momentum(), change = now - before;
+                   const Vector3 force = s.template essential<0>().reaction(0) + s.template essential<0>().reaction(1);
+                   const double interval = 0.5 * (step_before + s.last_time_step());
+                   balance = std::max(balance, (change - interval * force).norm());
+                   largest = std::max(largest, change.norm());
+                   before = now;
+                   step_before = s.last_time_step();
+                 }));
+  CHECK(simulation.steps() > 100);
+  CHECK(error < 1e-10 * size);
+  CHECK(largest > 0.0);
+  CHECK(balance < 1e-9 * largest);
+  // The work of the conditions is the energy that the body has.
+  MESSAGE("moving boundary: error " << error / size << ", energy error " << simulation.ledger().error() << " in "
+                                    << simulation.steps() << " steps");
+  CHECK(simulation.ledger().error() < 2e-3);
+}
+
+}  // namespace
+
+TEST_CASE("Statics: prescribed displacements and reactions, values at the particles") {
+  check_statics(plate(undamped()), 1e-9);
+}
+TEST_CASE("Statics: prescribed displacements and reactions, coefficients") {
+  check_statics(plate(GaussCells<2>{}), 0.03);
+}
+TEST_CASE("A moving boundary: values at the particles") {
+  check_motion(plate(undamped()));
+}
+TEST_CASE("A moving boundary: coefficients") {
+  check_motion(plate(GaussCells<2>{}));
+}
+
+TEST_CASE("A hanging bar: displacement and reaction under its weight") {
+  Body body{"bar", bar({.length = length, .cells = 40}), Rkpm<1>{}, undamped(), Materials{Region{"body", law}}};
+  const double g = 1e6, modulus = law.density * law.wave_speed() * law.wave_speed();
+  const auto top = select(body.cloud(), [](const Point<1>& X) { return X[0] < 1e-12; });
+  const auto end = select(body.cloud(), [](const Point<1>& X) { return X[0] > length - 1e-12; });
+  StaticProblem problem(body, {fixed(top)}, BodyForce<>{.acceleration = Vector3(g, 0.0, 0.0)});
+  const StaticReport report = StaticNewton{}.solve(problem);
+  CHECK_FALSE(report.factorized_lu);
+  CHECK(body.displacement[end[0]][0] ==
+        doctest::Approx(0.5 * law.density * g * length * length / modulus).epsilon(5e-3).scale(0.0));
+  CHECK(problem.reaction(0)[0] == doctest::Approx(-law.density * g * length).epsilon(1e-9).scale(0.0));
+}
+
+TEST_CASE("Statics that cannot succeed say why") {
+  Body body{"bar", bar({.length = length, .cells = 10}), Rkpm<1>{}, undamped(), Materials{Region{"body", law}}};
+  const auto top = select(body.cloud(), [](const Point<1>& X) { return X[0] < 1e-12; });
+  const auto end = select(body.cloud(), [](const Point<1>& X) { return X[0] > length - 1e-12; });
+  PrescribedMotion through{
+      end, [](const Vector3&, double) { return Vector3(-1.5 * length, 0.0, 0.0); }, {true, true, true}};
+  StaticProblem problem(body, {fixed(top), through});
+  std::string message;
+  try {
+    StaticNewton{}.solve(problem);
+  } catch (const ComputationError& error) {
+    message = error.what();
+  }
+  CAPTURE(message);
+  CHECK(message.find("StaticNewton found no equilibrium at 1 of the load") != std::string::npos);
+  CHECK(message.find("iterations") != std::string::npos);
+  CHECK_THROWS_WITH_AS(StaticNewton{.load_steps = 0}.validate(), doctest::Contains("StaticNewton.load_steps = 0"),
+                       ParameterError);
+  CHECK_THROWS_WITH_AS(StaticProblem(body, {fixed({99})}), doctest::Contains("particle 99 does not exist"),
+                       ParameterError);
+  CHECK_THROWS_WITH_AS(StaticProblem(body, {fixed(end), fixed(end)}), doctest::Contains("is prescribed twice"),
+                       ParameterError);
+}

@@ -1,0 +1,270 @@
+// The tables of the quadrature rules: row and column conditions, volumes, colours, errors, and the concept.
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <tactoid/geometry/all.hpp>
+#include <tactoid/kernel/all.hpp>
+#include <tactoid/quadrature/all.hpp>
+
+using namespace tactoid;
+
+namespace {
+
+struct WithoutStabilization {
+  PointTable build(const PointCloud<3>&, const Rkpm<3>&) const { return {}; }
+};
+struct BuildsNothing {
+  void build(const PointCloud<3>&, const Rkpm<3>&) const {}
+  Stabilization stabilization(double) const { return {}; }
+};
+struct ForPlanesOnly {
+  PointTable build(const PointCloud<2>&, const Rkpm<2>&) const { return {}; }
+  Stabilization stabilization(double) const { return {}; }
+};
+struct NumberForStabilization {
+  PointTable build(const PointCloud<3>&, const Rkpm<3>&) const { return {}; }
+  double stabilization(double) const { return 0.0; }
+};
+static_assert(Quadrature<NodalCentroids, Rkpm<1>> && Quadrature<NodalCentroids, Rkpm<2>> &&
+              Quadrature<NodalCentroids, Mls<3>>);
+static_assert(Quadrature<GaussCells<1>, Rkpm<3>> && Quadrature<GaussCells<2>, Rkpm<2>>);
+static_assert(!Quadrature<WithoutStabilization, Rkpm<3>>);
+static_assert(!Quadrature<BuildsNothing, Rkpm<3>>);
+static_assert(Quadrature<ForPlanesOnly, Rkpm<2>> && !Quadrature<ForPlanesOnly, Rkpm<3>>);
+static_assert(!Quadrature<NumberForStabilization, Rkpm<3>>);
+static_assert(!Quadrature<NodalCentroids, int>);
+
+Vector3 shortest(const PointTable& table, Vector3 d) {
+  for (int k = 0; k < 3; ++k)
+    if (table.period[k] > 0.0) d[k] -= table.period[k] * std::round(d[k] / table.period[k]);
+  return d;
+}
+
+/// What every table must keep, and its volume.
+template <int D>
+void check_table(const PointCloud<D>& cloud, const PointTable& table, const std::string& name) {
+  CAPTURE(name);
+  REQUIRE(table.points() > 0);
+  CHECK(table.particles == cloud.size());
+  CHECK(table.dimension == D);
+  double sum = 0.0, row_error = 0.0;
+  bool sorted = true, even = true, owned = true;
+  for (std::size_t q = 0; q < table.points(); ++q) {
+    CHECK(table.volume[q] > 0.0);
+    sum += table.volume[q];
+    if (q > 0) sorted = sorted && table.region[q - 1] <= table.region[q];
+    const auto row = table.row(q);
+    even = even && row.size() % 2 == 0;
+    Vector3 total = Vector3::Zero();
+    Tensor3 linear = Tensor3::Zero();
+    double size = 0.0;
+    bool has_owner = false;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const bool padding = is_padding(table, q, table.offsets[q] + k);
+      const Vector3 G(row[k].gradient[0], row[k].gradient[1], row[k].gradient[2]);
+      if (padding) {
+        CHECK(k + 1 == row.size());
+        CHECK(G.isZero(0.0));
+        CHECK(row[k].weight == 0.0F);
+        continue;
+      }
+      const Vector3 d =
+          shortest(table, table.particle_position[row[k].particle].template head<3>() - table.position[q]);
+      total += G;
+      linear += d * G.transpose();
+      size += G.norm() * d.norm();
+      has_owner = has_owner || row[k].particle == table.owner[q];
+    }
+    owned = owned && has_owner;
+    Tensor3 expected = Tensor3::Zero();
+    expected.topLeftCorner(D, D).setIdentity();
+    row_error = std::max(row_error, (linear - expected).norm() / size);
+    row_error = std::max(row_error, total.norm() * std::pow(table.volume[q], 1.0 / D) / size);
+  }
+  CHECK(sorted);
+  CHECK(even);
+  CHECK(owned);
+  CHECK(row_error < 1e-12);
+  CHECK(sum == doctest::Approx(volume(cloud)).epsilon(1e-12).scale(0.0));
+
+  // Colours: every point once; no particle twice in a colour.
+  std::vector<int> seen(table.points(), 0);
+  REQUIRE(table.color_offsets.back() == table.chunks.size());
+  for (std::size_t c = 0; c + 1 < table.color_offsets.size(); ++c) {
+    std::set<Index> taken;
+    for (std::size_t k = table.color_offsets[c]; k < table.color_offsets[c + 1]; ++k) {
+      std::set<Index> own;
+      for (std::size_t q = table.chunks[k].begin; q < table.chunks[k].end; ++q) {
+        ++seen[q];
+        CHECK(table.region[q] == table.chunks[k].region);
+        for (const TableEntry& entry : table.row(q)) own.insert(entry.particle);
+      }
+      for (Index i : own) CHECK(taken.insert(i).second);
+    }
+  }
+  CHECK(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+}
+
+/// Largest |Σ_q V_q G_qI − b_I| over the largest Σ_q V_q |G_qI|.
+template <int D>
+double column_error(const PointCloud<D>& cloud, const PointTable& table) {
+  std::vector<Vector3> sum(cloud.size(), Vector3::Zero());
+  std::vector<double> size(cloud.size(), 0.0);
+  for (std::size_t q = 0; q < table.points(); ++q)
+    for (const TableEntry& entry : table.row(q)) {
+      const Vector3 G(entry.gradient[0], entry.gradient[1], entry.gradient[2]);
+      sum[entry.particle] += table.volume[q] * G;
+      size[entry.particle] += table.volume[q] * G.norm();
+    }
+  const auto b = boundary_normal_integrals(cloud);
+  double error = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    error = std::max(error, (sum[i] - pad(b[i]).template head<3>()).norm());
+  return error / *std::max_element(size.begin(), size.end());
+}
+
+template <int D>
+void check_nodal(const PointCloud<D>& cloud, const std::string& name) {
+  NodalCentroids rule;
+  rule.points_per_chunk = 16;
+  const PointTable table = rule.build(cloud, Rkpm<D>{});
+  check_table(cloud, table, name);
+  const double error = column_error(cloud, table);
+  MESSAGE(name << ": " << table.points() << " points, "
+               << static_cast<double>(table.pairs()) / static_cast<double>(table.points())
+               << " particles per point, column error " << error << ", " << table.color_offsets.size() - 1
+               << " colours");
+  CHECK(error < 1e-12);
+  CHECK(table.value_based());
+}
+
+}  // namespace
+
+TEST_CASE("NodalCentroids keeps rows, columns, volumes and colours: 3D") {
+  check_nodal(jitter(box({.size = {3e-6, 2e-6, 2e-6}, .cells = {6, 5, 4}}), 0.2), "jittered box");
+  check_nodal(ball({.radius = 5e-6, .core_radius = 2e-6, .core_cells = 4, .shells = 2}), "ball with two regions");
+  check_nodal(disc({.radius = 5e-6, .height = 2e-6, .core_cells = 4, .rings = 3, .layers = 4}), "disc");
+}
+
+TEST_CASE("NodalCentroids keeps rows, columns, volumes and colours: periodic boxes") {
+  const std::array<bool, 3> all = {true, true, true}, one = {true, false, false};
+  check_nodal(box({.size = {1e-6, 1e-6, 1e-6}, .cells = {5, 5, 5}, .periodic = all}), "periodic box");
+  check_nodal(jitter(box({.size = {1e-6, 1e-6, 1e-6}, .cells = {5, 5, 5}, .periodic = all}), 0.15),
+              "jittered periodic box");
+  check_nodal(jitter(box({.size = {1e-6, 1e-6, 1e-6}, .cells = {6, 5, 5}, .periodic = one}), 0.15),
+              "box periodic along x");
+  check_nodal(rectangle({.size = {1e-6, 1e-6}, .cells = {8, 6}, .periodic = {true, true}}), "periodic rectangle");
+  check_nodal(bar({.length = 1e-6, .cells = 12, .periodic = true}), "periodic bar");
+}
+
+TEST_CASE("NodalCentroids keeps rows, columns, volumes and colours: 2D and 1D") {
+  check_nodal(jitter(rectangle({.size = {2e-6, 1e-6}, .cells = {12, 7}}), 0.2), "jittered rectangle");
+  check_nodal(circle({.radius = 5e-6, .core_cells = 6, .rings = 4}), "circle");
+  check_nodal(jitter(bar({.length = 1e-6, .cells = 20}), 0.2), "jittered bar");
+}
+
+TEST_CASE("A ball with two regions gives particles on the interface one point of each material") {
+  const PointCloud<3> cloud = ball({.radius = 5e-6, .core_radius = 2e-6, .core_cells = 4, .shells = 2});
+  const PointTable table = NodalCentroids{}.build(cloud, Rkpm<3>{});
+  double core = 0.0, exact = 0.0;
+  for (std::size_t q = 0; q < table.points(); ++q)
+    if (cloud.regions[table.region[q]] == "nucleus") core += table.volume[q];
+  for (const auto& point : gauss_points<2>(cloud))
+    if (cloud.regions[point.region] == "nucleus") exact += point.weight;
+  CHECK(core == doctest::Approx(exact).epsilon(1e-12).scale(0.0));
+  CHECK(table.points() == cloud.size() + 98);  // 6 n² + 2 nodes on the surface of the core, n = 4
+}
+
+TEST_CASE("The stabilisation: none for affine fields, and none in the table of the Gauss cells") {
+  const PointCloud<2> cloud = jitter(rectangle({.size = {1e-6, 1e-6}, .cells = {6, 6}}), 0.2);
+  const PointTable table = NodalCentroids{}.build(cloud, Rkpm<2>{});
+  for (std::size_t q = 0; q < table.points(); ++q) {
+    double moment = 0.0;
+    for (const TableEntry& entry : table.row(q)) {
+      CHECK(entry.weight >= 0.0F);
+      moment += static_cast<double>(entry.weight) *
+                (table.particle_position[entry.particle] - table.particle_position[table.owner[q]]).squaredNorm();
+    }
+    CHECK(table.stabilization_scale[q] * moment == doctest::Approx(2.0 * table.volume[q]).epsilon(1e-12).scale(0.0));
+  }
+  CHECK(NodalCentroids{.solid_ratio = 0.2}.stabilization(100.0).modulus == 20.0);
+  CHECK(NodalCentroids{.fluid_modulus = 7.0}.stabilization(0.0).modulus == 7.0);
+  CHECK(NodalCentroids{.fluid_damping_time = 3e-8}.stabilization(0.0).damping_time == 3e-8);
+  CHECK(GaussCells<2>{}.stabilization(100.0).modulus == 0.0);
+  CHECK(GaussCells<2>{}.build(cloud, Rkpm<2>{}).stabilization_scale.empty());
+}
+
+TEST_CASE("GaussCells samples true shape functions") {
+  const PointCloud<2> cloud = jitter(rectangle({.size = {2e-6, 1e-6}, .cells = {8, 5}}), 0.2);
+  const PointTable table = GaussCells<2>{.points_per_chunk = 16}.build(cloud, Rkpm<2>{});
+  check_table(cloud, table, "GaussCells<2>");
+  CHECK(table.points() == 4 * cloud.cells.size());
+  REQUIRE_FALSE(table.value_based());
+  const auto reproduces = [&](auto value, auto particle, std::size_t begin, std::size_t end, const Vector3& X) {
+    double one = 0.0;
+    Vector3 x = Vector3::Zero();
+    for (std::size_t e = begin; e < end; ++e) {
+      one += value(e);
+      x += value(e) * table.particle_position[particle(e)].template head<3>();
+    }
+    CHECK(one == doctest::Approx(1.0).epsilon(1e-12).scale(0.0));
+    CHECK((x - X).norm() < 1e-17);
+  };
+  for (std::size_t q = 0; q < table.points(); ++q)
+    reproduces([&](std::size_t e) { return table.point_values[e]; },
+               [&](std::size_t e) { return table.entries[e].particle; }, table.offsets[q], table.offsets[q + 1],
+               table.position[q]);
+  const ValueRows& rows = table.particle_values;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    reproduces([&](std::size_t e) { return rows.values[e]; }, [&](std::size_t e) { return rows.particles[e]; },
+               rows.offsets[i], rows.offsets[i + 1], pad(cloud.positions[i]).head<3>());
+
+  // Interpolation and its transpose: the power of forces at particles is that of the forces of the unknowns.
+  const ParticleValues map(rows);
+  CHECK_FALSE(map.identity());
+  Field u(cloud.size()), f(cloud.size()), g(cloud.size(), Vector4::Zero());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[i] = Vector4(std::sin(3.0 * double(i)), std::cos(2.0 * double(i)), 0.0, 0.0);
+    f[i] = Vector4(std::cos(5.0 * double(i)), std::sin(7.0 * double(i)), 0.0, 0.0);
+  }
+  map.distribute(f, g);
+  const Field at_particles = map.evaluate(u);
+  double a = 0.0, b = 0.0;
+  for (std::size_t i = 0; i < u.size(); ++i) a += f[i].dot(at_particles[i]), b += g[i].dot(u[i]);
+  CHECK(a == doctest::Approx(b).epsilon(1e-12).scale(0.0));
+}
+
+TEST_CASE("A support that is too small is an error that names the point, the neighbours and the condition number") {
+  const PointCloud<3> cloud = box({.size = {1e-6, 1e-6, 1e-6}, .cells = {4, 4, 4}});
+  const Rkpm<3> kernel{.support = 0.9};
+  for (int rule = 0; rule < 2; ++rule) {
+    std::string message;
+    try {
+      if (rule == 0)
+        (void)NodalCentroids{}.build(cloud, kernel);
+      else
+        (void)GaussCells<2>{}.build(cloud, kernel);
+    } catch (const GeometryError& error) {
+      message = error.what();
+    }
+    CAPTURE(message);
+    CHECK(message.find("particles in reach") != std::string::npos);
+    CHECK(message.find("uadrature point ") != std::string::npos);
+    CHECK(message.find("condition number ") != std::string::npos);
+    CHECK(message.find("enlarge the support") != std::string::npos);
+  }
+  CHECK_THROWS_WITH_AS((void)NodalCentroids{.condition_limit = 1.5}.build(cloud, Rkpm<3>{}),
+                       doctest::Contains("(allowed: 1.5)"), GeometryError);
+}
+
+TEST_CASE("Parameters out of range are rejected by name") {
+  CHECK_THROWS_WITH_AS(NodalCentroids{.solid_ratio = -0.1}.validate(),
+                       "NodalCentroids.solid_ratio = -0.1 is not allowed: it must be zero or positive, and finite.",
+                       ParameterError);
+  CHECK_THROWS_AS(NodalCentroids{.fluid_modulus = -1.0}.validate(), ParameterError);
+  CHECK_THROWS_AS(NodalCentroids{.solid_damping_time = -1.0}.validate(), ParameterError);
+  CHECK_THROWS_AS(NodalCentroids{.condition_limit = 0.0}.validate(), ParameterError);
+  CHECK_THROWS_AS(GaussCells<2>{.condition_limit = -1.0}.validate(), ParameterError);
+}
