@@ -59,7 +59,9 @@ void van_der_waals(benchmark::State& state) {
   const SpreadingParameters p;
   contact(state, p.van_der_waals_force(), p.cell_cloud().size());
 }
-void anchoring(benchmark::State& state) { contact(state, ContactAnchoring{}, SpreadingParameters{}.cell_cloud().facets.size()); }
+void anchoring(benchmark::State& state) {  // looks at the gaps in every tenth step
+  contact(state, ContactAnchoring{}, SpreadingParameters{}.cell_cloud().facets.size());
+}
 void surface_tension(benchmark::State& state) {
   boundary(state, SurfaceTension{}, 4 * SpreadingParameters{}.cell_cloud().facets.size());
 }

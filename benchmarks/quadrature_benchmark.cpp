@@ -11,11 +11,14 @@ void build(benchmark::State& state, const PointCloud<3>& cloud, const Quadrature
   set_thread_count(1);
   PointTable table = quadrature.build(cloud, Rkpm<3>{});
   const std::size_t points = table.points(), pairs = table.pairs();
-  measure(state, [&] { table = quadrature.build(cloud, Rkpm<3>{}); }, {{"ns_per_point", points}, {"ns_per_pair", pairs}});
+  measure(state, [&] { table = quadrature.build(cloud, Rkpm<3>{}); },
+          {{"ns_per_point", points}, {"ns_per_pair", pairs}});
   state.counters["pairs_per_point"] = static_cast<double>(pairs) / static_cast<double>(points);
 }
 
-void cell_nodal_centroids(benchmark::State& state) { build(state, SpreadingParameters{}.cell_cloud(), NodalCentroids{}); }
+void cell_nodal_centroids(benchmark::State& state) {
+  build(state, SpreadingParameters{}.cell_cloud(), NodalCentroids{});
+}
 void cell_without_correction(benchmark::State& state) {
   build(state, SpreadingParameters{}.cell_cloud(), NodalCentroids{.consistency_tolerance = 0.0});
 }

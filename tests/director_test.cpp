@@ -10,6 +10,8 @@
 #include <tactoid/core/lanes.hpp>
 #include <tactoid/director/all.hpp>
 
+#include "relative.hpp"
+
 using namespace tactoid;
 
 namespace {
@@ -62,7 +64,7 @@ TEST_CASE("objective rates under simple shear follow the exact solutions") {
   const double coarse = (carried<Corotational>(L, h0, t, 20) - corotational).norm();
   const double fine = (carried<Corotational>(L, h0, t, 40) - corotational).norm();
   CHECK(fine < 2e-5);
-  CHECK(std::log2(coarse / fine) == doctest::Approx(2.0).epsilon(0.01));
+  CHECK(std::log2(coarse / fine) == test::relative(2.0).epsilon(0.01));
 
   const Vector3 convected(h0.x(), h0.y() - rate * t * h0.x(), h0.z());  // F⁻ᵀ h₀
   CHECK((carried<Convected>(L, h0, t, 7) - convected).norm() < 1e-14);
@@ -78,7 +80,7 @@ TEST_CASE("objective rates under pure stretch") {
   const double coarse = (carried<Convected>(L, h0, t, 20) - exact).norm();
   const double fine = (carried<Convected>(L, h0, t, 40) - exact).norm();
   CHECK(fine < 1e-5);
-  CHECK(std::log2(coarse / fine) == doctest::Approx(2.0).epsilon(0.01));
+  CHECK(std::log2(coarse / fine) == test::relative(2.0).epsilon(0.01));
 }
 
 TEST_CASE("rigid spin turns the director with the body and keeps its length in steps of any size") {
@@ -109,7 +111,7 @@ TEST_CASE("Cayley update with a source") {
     return (x - exact).norm();
   };
   CHECK(error(80) < 1e-4);
-  CHECK(std::log2(error(40) / error(80)) == doctest::Approx(2.0).epsilon(0.01));
+  CHECK(std::log2(error(40) / error(80)) == test::relative(2.0).epsilon(0.01));
 
   Tensor<Lanes<4>> A;
   Vector<Lanes<4>> h_lanes, s_lanes;
@@ -121,7 +123,7 @@ TEST_CASE("Cayley update with a source") {
   }
   const Vector3 single = cayley_update(W, h, 0.1, s);
   const Vector<Lanes<4>> pack = cayley_update(A, h_lanes, 0.1, s_lanes);
-  for (int i = 0; i < 3; ++i) CHECK(pack(i).lane[3] == doctest::Approx(single(i)).epsilon(1e-14));
+  for (int i = 0; i < 3; ++i) CHECK(pack(i).lane[3] == test::relative(single(i)).epsilon(1e-14));
 }
 
 TEST_CASE("Ginzburg-Landau: r is the derivative of R, and the wall is tanh(x / (sqrt 2 core size))") {
@@ -132,29 +134,29 @@ TEST_CASE("Ginzburg-Landau: r is the derivative of R, and the wall is tanh(x / (
   for (int i = 0; i < 3; ++i) v(i) = D::variable(h(i), i);
   const D R = ginzburg_landau_energy(v, core);
   const double excess = h.squaredNorm() - 1.0;
-  CHECK(R.value == doctest::Approx(excess * excess / (4.0 * core * core)).epsilon(1e-14));
+  CHECK(R.value == test::relative(excess * excess / (4.0 * core * core)).epsilon(1e-14));
   const Vector3 r = ginzburg_landau(h, core);
-  for (int i = 0; i < 3; ++i) CHECK(r(i) == doctest::Approx(R.derivative[static_cast<std::size_t>(i)]).epsilon(1e-14));
+  for (int i = 0; i < 3; ++i) CHECK(r(i) == test::relative(R.derivative[static_cast<std::size_t>(i)]).epsilon(1e-14));
   CHECK(ginzburg_landau(Vector3(0.6, 0.0, 0.8), core).norm() * core * core < 1e-15);
 
   for (const double x : {-1.0e-6, 0.2e-6, 0.9e-6}) {
     const double k = 1.0 / (std::numbers::sqrt2 * core), f = std::tanh(k * x);
     const double second = -2.0 * k * k * f * (1.0 - f * f);  // f″
-    CHECK(ginzburg_landau(Vector3(0.0, f, 0.0), core).y() == doctest::Approx(second).epsilon(1e-13));
+    CHECK(ginzburg_landau(Vector3(0.0, f, 0.0), core).y() == test::relative(second).epsilon(1e-13));
   }
 }
 
 TEST_CASE("director field: flux, source, limits") {
   const DirectorField field{.diffusivity = 2.0e-7, .core_size = 0.4e-6};
   field.validate();
-  CHECK(field.penalty_time_step() == doctest::Approx(0.8e-6).epsilon(1e-15));
+  CHECK(field.penalty_time_step() == test::relative(0.8e-6).epsilon(1e-15));
   const Vector3 h(0.5, 0.0, 0.0);
-  CHECK(field.source(h).x() == doctest::Approx(2.0e-7 * 0.75 * 0.5 / (0.4e-6 * 0.4e-6)).epsilon(1e-14));
+  CHECK(field.source(h).x() == test::relative(2.0e-7 * 0.75 * 0.5 / (0.4e-6 * 0.4e-6)).epsilon(1e-14));
 
   // At the step's limit the penalty's growth factor 1 − Δt · 2 D/ε² is −1.
   const auto radial = [&](double r) { return field.source(Vector3(r, 0, 0)).x(); };
   const double slope = (radial(1.0 + 1e-7) - radial(1.0 - 1e-7)) / 2e-7;
-  CHECK(1.0 + field.penalty_time_step() * slope == doctest::Approx(-1.0).epsilon(1e-6));
+  CHECK(1.0 + field.penalty_time_step() * slope == test::relative(-1.0).epsilon(1e-6));
 
   Tensor3 F, G;
   F << 1.2, 0.3, 0.0, -0.1, 0.9, 0.2, 0.05, 0.0, 1.1;
@@ -231,7 +233,7 @@ TEST_CASE("the random numbers are those of SplitMix64") {
     sum += x / 20000, squares += x * x / 20000;
   }
   CHECK(std::abs(sum) < 0.03);
-  CHECK(squares == doctest::Approx(1.0).epsilon(0.03));
+  CHECK(squares == test::relative(1.0).epsilon(0.03));
 }
 
 TEST_CASE("the director at the particles of a cloud of any dimension") {

@@ -413,6 +413,23 @@ TEST_CASE("A probe reads the field of coefficients, at particles and between the
   }
 }
 
+TEST_CASE("A probe's velocity is that of the present instant, as observers see it: free fall") {
+  auto body = free_block(NodalCentroids{});
+  const Probe probe(body, {{1 * um, 0.4 * um, 0.6 * um}});
+  const Vector3 gravity(0.0, 2e4, -1e4);
+  Simulation simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{on<0>(BodyForce<>{.acceleration = gravity})},
+                        CentralDifference{}};
+  int calls = 0;
+  simulation.run(1e-7, every(2e-8, [&](auto& s) {
+                   const ProbeReading reading = probe.template read<0>(s)[0];
+                   CHECK((reading.velocity - s.time() * gravity).norm() <= 1e-9 * s.time() * gravity.norm());
+                   const Vector3 fall = 0.5 * s.time() * s.time() * gravity;
+                   CHECK((reading.displacement - fall).norm() <= 1e-9 * fall.norm());
+                   ++calls;
+                 }));
+  CHECK(calls == 6);
+}
+
 TEST_CASE("A probe outside the body is refused with the point's name") {
   auto body = free_block(NodalCentroids{});
   try {

@@ -113,7 +113,7 @@ TEST_CASE("what is wrong on the command line is one sentence") {
   CHECK(error({"--preset", "x"}) == "--preset: \"x\" is not one of printed, viscous/10, elastic.");
   CHECK(error({"--out", ""}) == "--out: the value is empty; a text is needed.");
   CHECK(error({"--out="}) == "--out= needs a value.");
-  CHECK(error({"--frames", ""}) == "--frames: \"\" is not a whole number.");
+  CHECK(error({"--frames", ""}) == "--frames: the value is empty; a whole number is needed.");
   CHECK(error({"--stiffness", ""}) == "--stiffness: the value is empty; a number is needed.");
   CHECK(error({"--out"}) == "--out needs a value.");
   CHECK(error({"--out", "--frames", "5"}) == "--out needs a value, but --frames follows.");
