@@ -8,6 +8,7 @@
 #include <tactoid/boundary/boundary.hpp>
 #include <tactoid/boundary/essential_conditions.hpp>
 #include <tactoid/integrator/static_newton.hpp>
+#include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/body_fields.hpp>
 #include <tactoid/simulation/stiffness.hpp>
 

@@ -6,6 +6,7 @@
 #include <tactoid/boundary/prescribed_motion.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/integrator/static_newton.hpp>
+#include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/static_problem.hpp>
 
 namespace tactoid {
