@@ -105,6 +105,20 @@ TEST_CASE("A front modulated by cos m θ: that mode has the amplitude, the other
   CHECK(disc.front(around(6 * um, 0.02, 8), 100e-9, Vector3::UnitZ(), 6).modes.size() == 7);
 }
 
+TEST_CASE("The modulation counts the modes from 2 on: mode 1 is no shape but a place") {
+  Footprint disc(4);
+  const ContactFront front = disc.front([](double x, double y) {
+    const double angle = std::atan2(y, x);
+    const double at = 5 * um * (1.0 + 0.2 * std::cos(2 * angle) + 0.2 * std::cos(3 * angle));
+    return 100e-9 + 0.1 * (std::hypot(x, y) - at);
+  });
+  REQUIRE(front.modes[1] > 0.01);
+  double sum = 0.0;
+  for (std::size_t m = 2; m < front.modes.size(); ++m) sum += 0.5 * front.modes[m] * front.modes[m];
+  CHECK(front.modulation == Close{std::sqrt(sum), 1e-12});
+  CHECK(front.modulation > 0.15);
+}
+
 TEST_CASE("An elliptic front, against its Fourier series") {
   Footprint disc(4);
   const double a = 6 * um, b = 4.5 * um;
