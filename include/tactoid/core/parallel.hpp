@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -46,6 +48,22 @@ void parallel_for(std::size_t count, const Body& body) {
     }
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+/// Σ_i term(i) over [0, count), on all threads. Terms are added up in 64 parts, whatever the number of threads: the same
+/// bits for any.
+template <class Term>
+[[nodiscard]] double parallel_sum(std::size_t count, const Term& term) {
+  std::array<double, 64> parts{};
+  const std::size_t size = (count + parts.size() - 1) / parts.size();
+  parallel_for(parts.size(), [&](std::size_t p) {
+    double sum = 0.0;
+    for (std::size_t i = p * size; i < std::min(count, (p + 1) * size); ++i) sum += term(i);
+    parts[p] = sum;
+  });
+  double total = 0.0;
+  for (const double part : parts) total += part;
+  return total;
 }
 
 }  // namespace tactoid

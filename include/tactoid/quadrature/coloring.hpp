@@ -14,8 +14,10 @@ namespace tactoid {
 /// chunks so that no two of one colour share a particle. Chunks of one colour may then add to the particles at
 /// the same time, and every particle receives its contributions in the order of the colours: the same bits for
 /// any number of threads. Points must be sorted by region. Among the colours allowed for a chunk the least used
-/// one is taken, which keeps the threads evenly loaded.
+/// one is taken, which keeps the threads evenly loaded. `points_per_chunk` = 0 chooses: large chunks, whose points
+/// share most of their particles, where there are enough of them to keep several threads busy.
 inline void color_chunks(PointTable& table, std::size_t points_per_chunk) {
+  if (points_per_chunk == 0) points_per_chunk = std::clamp<std::size_t>(table.points() / 64, 64, 512);
   points_per_chunk = std::max<std::size_t>(8, points_per_chunk / 8 * 8);  // whole blocks of lanes
 
   std::vector<PointChunk> chunks;

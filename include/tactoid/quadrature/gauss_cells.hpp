@@ -26,7 +26,7 @@ template <int N = 2>
 struct GaussCells {
   static_assert(N >= 1 && N <= 3, "GaussCells takes 1, 2 or 3 points per direction.");
   double condition_limit = 1e10;      ///< largest condition number of a moment matrix that is accepted
-  std::size_t points_per_chunk = 64;  ///< points that one thread adds at a time; no influence on accuracy
+  std::size_t points_per_chunk = 0;  ///< points that one thread adds at a time; 0: by the size of the body
 
   void validate() const { require_positive("GaussCells.condition_limit", condition_limit); }
 

@@ -35,7 +35,7 @@ struct NodalCentroids {
   double fluid_damping_time = 5e-8;     ///< s, >= 0
   double condition_limit = 1e10;        ///< largest condition number of a moment matrix that is accepted
   double consistency_tolerance = 1e-13; ///< of the column conditions; 0: no correction (for comparisons only)
-  std::size_t points_per_chunk = 64;  ///< points that one thread adds at a time; no influence on accuracy
+  std::size_t points_per_chunk = 0;  ///< points that one thread adds at a time; 0: by the size of the body
 
   void validate() const {
     require_non_negative("NodalCentroids.solid_ratio", solid_ratio);

@@ -42,7 +42,7 @@ class ParticleValues {
   /// Adds forces at the particles to the forces of the unknowns.
   void distribute(const Field& at_particles, Field& unknowns) const {
     if (identity()) {
-      for (std::size_t i = 0; i < unknowns.size(); ++i) unknowns[i] += at_particles[i];
+      parallel_for(unknowns.size(), [&](std::size_t i) { unknowns[i] += at_particles[i]; });
     } else {
       multiply(transpose_, at_particles, unknowns, true);
     }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/parallel.hpp>
 #include <tactoid/director/all.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
@@ -110,6 +111,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       for (Index q = 0; q < table_.points(); ++q) points_of_particle_[table_.owner[q]].push_back(q);
     }
     point_scale_ = wave_numbers();
+    for (Index q = 0; q < table_.points(); ++q) longest_row_ = std::max(longest_row_, table_.row(q).size());
   }
 
   // --- state -------------------------------------------------------------------------------------------------
@@ -143,10 +145,12 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   }
 
   // --- forces ------------------------------------------------------------------------------------------------
-  /// Adds the internal forces at the present state to `force` (and sets the director's flux and rates), advances
-  /// the histories by `time_step` if `commit`, and returns energies and powers. One pass over the table.
-  BodyTotals add_internal_forces(double time_step, bool commit) {
+  /// Adds the internal forces at the present state to `force` (and sets the director's flux and rates), and returns
+  /// energies and powers. One pass over the table. With `advance` the histories advanced by `time_step` wait for
+  /// accept_histories(): a step that breaks down has not touched them.
+  BodyTotals add_internal_forces(double time_step, bool advance) {
     if constexpr (has_director) std::fill(director_flux.begin(), director_flux.end(), Vector4::Zero());
+    pack_motion();
     for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
       chunk_totals_[c] = {};
       chunk_stretch_[c] = 0.0;
@@ -154,14 +158,19 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       visit(chunk.region, [&](auto& region) {
         using Law = typename std::decay_t<decltype(region)>::Law;
         if (uses_rate<Law> || has_director || region.stabilization.modulus * region.stabilization.damping_time > 0.0)
-          pass<true>(region, chunk, c, time_step, commit);
+          pass<true>(region, chunk, c, time_step, advance);
         else
-          pass<false>(region, chunk, c, time_step, commit);
+          pass<false>(region, chunk, c, time_step, advance);
       });
     });
     BodyTotals totals;
     for (const BodyTotals& part : chunk_totals_) totals += part;
     return totals;
+  }
+
+  /// Makes the histories of the last add_internal_forces(…, true) those of the body.
+  void accept_histories() {
+    for_each_region([](auto& region, Index) { std::swap(region.histories, region.advanced); });
   }
 
   /// The first point whose volume ratio is not positive (or is NaN) after add_internal_forces; points() if none.
@@ -185,6 +194,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// Cauchy stress and volume ratio at all quadrature points, without advancing any history.
   [[nodiscard]] std::vector<PointSample> sample_points() {
     std::vector<PointSample> samples(table_.points());
+    pack_motion();
     for_each_region([&](auto& region, Index) {
       using Region = std::decay_t<decltype(region)>;
       parallel_for(region.end - region.begin, [&](std::size_t i) {
@@ -226,7 +236,11 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
 
   /// Bytes of the tables and fields of the body.
   [[nodiscard]] std::size_t memory() const {
-    return table_.memory() + size() * (5 * sizeof(Vector4) + 2 * sizeof(double)) + table_.points() * sizeof(double);
+    std::size_t histories = 0;
+    for_each_region([&](const auto& region, Index) {
+      histories += 2 * region.histories.size() * sizeof(typename std::decay_t<decltype(region.histories)>::value_type);
+    });
+    return histories + table_.memory() + size() * (7 * sizeof(Vector4) + 2 * sizeof(double)) + table_.points() * sizeof(double);
   }
 
  private:
@@ -306,26 +320,40 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return scale;
   }
 
+  /// What a particle's motion is for the force loop: u alone, or u and v side by side.
+  template <bool Rate>
+  static constexpr int lanes = Rate ? 8 : 4;
+  template <bool Rate>
+  [[nodiscard]] const rows::Values<lanes<Rate>>* motion() const {
+    if constexpr (Rate) return motion_.data();
+    else return displacement.data();
+  }
+  void pack_motion() {
+    motion_.resize(size());
+    parallel_for(size(), [&](std::size_t i) { motion_[i] << displacement[i], velocity[i]; });
+  }
+
   /// Gathered gradients of the fields at one point.
+  template <bool Rate>
   struct PointGradients {
-    rows::Gradient u, v, h;
+    rows::Gradient<lanes<Rate>> motion;
+    rows::Gradient<> director;
   };
 
   template <bool Rate>
-  void gather_point(std::size_t q, PointGradients& g) const {
+  void gather_point(std::size_t q, PointGradients<Rate>& g) const {
     const auto row = table_.row(q);
-    if constexpr (has_director) rows::gather(row, displacement.data(), velocity.data(), director.data(), g.u, g.v, g.h);
-    else if constexpr (Rate) rows::gather(row, displacement.data(), velocity.data(), g.u, g.v);
-    else rows::gather(row, displacement.data(), g.u);
+    if constexpr (has_director) rows::gather(row, motion<Rate>(), director.data(), g.motion, g.director);
+    else rows::gather(row, motion<Rate>(), g.motion);
   }
 
-  template <class T>
-  static void set_point(PointState<T>& state, const PointGradients& g, const Vector4* h, int l, bool rate) {
+  template <bool Rate, class T>
+  static void set_point(PointState<T>& state, const PointGradients<Rate>& g, const Vector4* h, int l) {
     for (int K = 0; K < 3; ++K)
       for (int i = 0; i < 3; ++i) {
-        set_lane(state.deformation_gradient(i, K), l, g.u.column[K][i] + (i == K ? 1.0 : 0.0));
-        if (rate) set_lane(state.deformation_rate(i, K), l, g.v.column[K][i]);
-        if constexpr (has_director) set_lane(state.director_gradient(i, K), l, g.h.column[K][i]);
+        set_lane(state.deformation_gradient(i, K), l, g.motion.column[K][i] + (i == K ? 1.0 : 0.0));
+        if constexpr (Rate) set_lane(state.deformation_rate(i, K), l, g.motion.column[K][4 + i]);
+        if constexpr (has_director) set_lane(state.director_gradient(i, K), l, g.director.column[K][i]);
       }
     if constexpr (has_director)
       for (int i = 0; i < 3; ++i) set_lane(state.director(i), l, (*h)[i]);
@@ -335,39 +363,38 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   auto block_state(const Region&, std::size_t begin, std::size_t end) const {
     PointState<typename Region::Scalar> state;
     for (std::size_t q = begin; q < end; ++q) {
-      PointGradients g;
+      PointGradients<Rate> g;
       gather_point<Rate>(q, g);
-      set_point(state, g, has_director ? &director[table_.owner[q]] : nullptr, static_cast<int>(q - begin), Rate);
+      set_point<Rate>(state, g, has_director ? &director[table_.owner[q]] : nullptr, static_cast<int>(q - begin));
     }
     return state;
   }
 
   /// One chunk of one region: gather, law, scatter, block by block.
   template <bool Rate, class Region>
-  void pass(Region& region, const PointChunk& chunk, std::size_t c, double time_step, bool commit) {
+  void pass(Region& region, const PointChunk& chunk, std::size_t c, double time_step, bool advance) {
     using T = typename Region::Scalar;
     constexpr std::size_t W = Region::width;
     const double kappa = table_.stabilization_scale.empty() ? 0.0 : region.stabilization.modulus;
     const double tau = region.stabilization.damping_time;
+    thread_local Field held;  // forces of the pairs of a row, until they are scattered
+    held.resize(std::max(held.size(), longest_row_));
     BodyTotals totals;
     double stretch = 0.0;
     for (std::size_t first = chunk.begin; first < chunk.end; first += W) {
       const std::size_t last = std::min(chunk.end, first + W);
       PointState<T> state;
       state.time_step = time_step;
-      PointGradients gradients[W];
+      PointGradients<Rate> gradients[W];
       for (std::size_t q = first; q < last; ++q) {
         gather_point<Rate>(q, gradients[q - first]);
-        set_point(state, gradients[q - first], has_director ? &director[table_.owner[q]] : nullptr,
-                  static_cast<int>(q - first), Rate);
+        set_point<Rate>(state, gradients[q - first], has_director ? &director[table_.owner[q]] : nullptr,
+                        static_cast<int>(q - first));
       }
-      auto& stored = region.histories[region.block(first)];
-      auto history = stored;
+      auto history = region.histories[region.block(first)];
       const Response<T> response = respond(region.law(first), state, history);
       const Inversion<T> F = invert(state.deformation_gradient);
-      bool sound = true;
-      for (int l = 0; l < int(last - first); ++l) sound = sound && lane(F.determinant, l) > 0.0;
-      if (commit && sound) stored = history;
+      if (advance) region.advanced[region.block(first)] = history;
       const T bound = largest_eigenvalue_bound<T>(F.inverse * F.inverse.transpose());
       Tensor<T> flux_h;
       if constexpr (has_director) {
@@ -387,24 +414,26 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         totals.strain_energy += V * lane(response.energy, l);
         totals.dissipated_power += V * lane(response.dissipated_power, l);
         totals.active_power += V * lane(response.active_power, l);
-        rows::Gradient flux;  // components beyond the dimension are no unknowns, whatever the stress
+        rows::Gradient<> flux;  // components beyond the dimension are no unknowns, whatever the stress
         for (int K = 0; K < dimension; ++K)
           for (int i = 0; i < dimension; ++i) flux.column[K][i] = V * lane(response.stress(i, K), l);
         const auto row = table_.row(q);
+        if (q + W < chunk.end) rows::prefetch(table_.row(q + W));
         if (kappa > 0.0) {
           const auto power = rows::stabilize(row, table_.owner[q], kappa * table_.stabilization_scale[q], tau, table_.period,
-                                             table_.particle_position.data(), displacement.data(),
-                                             Rate ? velocity.data() : nullptr, gradients[l].u, gradients[l].v, force.data(), flux);
+                                             table_.particle_position.data(), motion<Rate>(), gradients[l].motion,
+                                             held.data(), force.data(), flux);
           totals.stabilization_energy += power.energy;
           totals.dissipated_power += power.dissipated;
-        }
-        if constexpr (has_director) {
-          rows::Gradient h;
-          for (int K = 0; K < 3; ++K)
-            for (int i = 0; i < 3; ++i) h.column[K][i] = V * lane(flux_h(i, K), l);
-          rows::scatter(row, flux, h, force.data(), director_flux.data());
+          rows::scatter(row, flux, held.data(), force.data());
         } else {
           rows::scatter(row, flux, force.data());
+        }
+        if constexpr (has_director) {
+          rows::Gradient<> h;
+          for (int K = 0; K < 3; ++K)
+            for (int i = 0; i < 3; ++i) h.column[K][i] = V * lane(flux_h(i, K), l);
+          rows::scatter(row, h, director_flux.data());
         }
       }
     }
@@ -431,6 +460,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::tuple<RegionLaw<Ms>...> laws_;
   std::vector<double> masses_, volumes_;
   std::vector<double> point_scale_;  // wave_numbers()
+  std::vector<rows::Values<8>> motion_;  // displacement and velocity, packed for the force loop
+  std::size_t longest_row_ = 0;
   std::vector<BodyTotals> chunk_totals_;
   std::vector<double> chunk_stretch_;
   std::vector<std::size_t> chunk_failure_;

@@ -25,7 +25,8 @@ struct RegionLaw {
   static constexpr int width = lane_count<Scalar>;
 
   std::vector<Law> laws;  ///< one, or one per point when graded
-  std::vector<HistoryOf<Law, Scalar>> histories;
+  std::vector<HistoryOf<Law, Scalar>> histories;  ///< of the accepted state
+  std::vector<HistoryOf<Law, Scalar>> advanced;   ///< by the step that is being computed
   std::size_t begin = 0;
   std::size_t end = 0;
   Stabilization stabilization;
@@ -55,6 +56,7 @@ struct RegionLaw {
       softest = std::min(softest, shear_modulus(law));
     }
     histories.resize((end - begin + width - 1) / static_cast<std::size_t>(width));
+    advanced = histories;
     stabilization = quadrature.stabilization(softest);
   }
 };

@@ -6,72 +6,89 @@
 #include <tactoid/quadrature/point_table.hpp>
 
 /// What happens per pair of a quadrature point and a particle. Everything in this file is the hot path: fixed
-/// sizes, contiguous rows, four lanes at a time, no branch that depends on data.
+/// sizes, contiguous rows, no branch that depends on data. A particle's values are four lanes (a padded vector) or eight
+/// (displacement and velocity side by side), which one load brings; rows have an even length, and two pairs are kept
+/// in flight, so that sums do not wait for each other.
 namespace tactoid::rows {
 
-/// Columns of a referential gradient: column[K] = ∂f/∂X_K, padded.
+/// N values of a particle: a padded vector, or two.
+template <int N>
+using Values = Eigen::Matrix<double, N, 1>;
+
+/// Columns of a referential gradient: column[K] = ∂f/∂X_K.
+template <int N = 4>
 struct Gradient {
-  Vector4 column[3] = {Vector4::Zero(), Vector4::Zero(), Vector4::Zero()};
+  Values<N> column[3] = {Values<N>::Zero(), Values<N>::Zero(), Values<N>::Zero()};
 };
 
-/// ∂f/∂X at a point: Σ_I f_I ⊗ G_qI. Rows have an even length, and two pairs are kept in flight.
-inline void gather(std::span<const TableEntry> row, const Vector4* f, Gradient& gradient) {
-  Gradient other;
+// The loops below work on local copies: what a store to a force may have changed, a compiler must load anew. (A copy by
+// assignment is a load; the copy constructor would go through the stack.)
+
+/// ∂f/∂X at a point: Σ_I f_I ⊗ G_qI.
+template <int N>
+inline void gather(std::span<const TableEntry> row, const Values<N>* f, Gradient<N>& df) {
+  Gradient<N> even, odd;
   for (std::size_t k = 0; k < row.size(); k += 2) {
-    const Vector4 &fa = f[row[k].particle], &fb = f[row[k + 1].particle];
+    const TableEntry &a = row[k], &b = row[k + 1];
+    Values<N> fa, fb;
+    fa = f[a.particle], fb = f[b.particle];
     for (int K = 0; K < 3; ++K) {
-      gradient.column[K] += row[k].gradient[K] * fa;
-      other.column[K] += row[k + 1].gradient[K] * fb;
+      even.column[K] += a.gradient[K] * fa;
+      odd.column[K] += b.gradient[K] * fb;
     }
   }
-  for (int K = 0; K < 3; ++K) gradient.column[K] += other.column[K];
+  for (int K = 0; K < 3; ++K) df.column[K] = even.column[K] + odd.column[K];
 }
 
 /// Two fields in one sweep.
-inline void gather(std::span<const TableEntry> row, const Vector4* f, const Vector4* g, Gradient& df, Gradient& dg) {
-  for (const TableEntry& entry : row) {
-    const Vector4 &fi = f[entry.particle], &gi = g[entry.particle];
+template <int N, int M>
+inline void gather(std::span<const TableEntry> row, const Values<N>* f, const Values<M>* g, Gradient<N>& df,
+                   Gradient<M>& dg) {
+  Gradient<N> f_even, f_odd;
+  Gradient<M> g_even, g_odd;
+  for (std::size_t k = 0; k < row.size(); k += 2) {
+    const TableEntry &a = row[k], &b = row[k + 1];
+    Values<N> fa, fb;
+    Values<M> ga, gb;
+    fa = f[a.particle], fb = f[b.particle], ga = g[a.particle], gb = g[b.particle];
     for (int K = 0; K < 3; ++K) {
-      df.column[K] += entry.gradient[K] * fi;
-      dg.column[K] += entry.gradient[K] * gi;
+      f_even.column[K] += a.gradient[K] * fa;
+      g_even.column[K] += a.gradient[K] * ga;
+      f_odd.column[K] += b.gradient[K] * fb;
+      g_odd.column[K] += b.gradient[K] * gb;
     }
+  }
+  for (int K = 0; K < 3; ++K) {
+    df.column[K] = f_even.column[K] + f_odd.column[K];
+    dg.column[K] = g_even.column[K] + g_odd.column[K];
   }
 }
 
-/// Three fields in one sweep.
-inline void gather(std::span<const TableEntry> row, const Vector4* f, const Vector4* g, const Vector4* h, Gradient& df,
-                   Gradient& dg, Gradient& dh) {
-  for (const TableEntry& entry : row) {
-    const Vector4 &fi = f[entry.particle], &gi = g[entry.particle], &hi = h[entry.particle];
-    for (int K = 0; K < 3; ++K) {
-      df.column[K] += entry.gradient[K] * fi;
-      dg.column[K] += entry.gradient[K] * gi;
-      dh.column[K] += entry.gradient[K] * hi;
-    }
-  }
+/// Σ_K flux_K G_qI,K: what the stress columns V_q P_·K do to the particle of a pair.
+[[nodiscard]] inline Vector4 contracted(const TableEntry& entry, const Gradient<>& flux) {
+  Vector4 sum = entry.gradient[0] * flux.column[0];
+  sum += entry.gradient[1] * flux.column[1];
+  sum += entry.gradient[2] * flux.column[2];
+  return sum;
 }
 
-/// f_I ← f_I − Σ_K flux_K G_qI,K: the internal force of the stress columns V_q P_·K.
-inline void scatter(std::span<const TableEntry> row, const Gradient& flux, Vector4* f) {
-  for (const TableEntry& entry : row) {
-    Vector4 sum = entry.gradient[0] * flux.column[0];
-    sum += entry.gradient[1] * flux.column[1];
-    sum += entry.gradient[2] * flux.column[2];
-    f[entry.particle] -= sum;
-  }
+/// f_I ← f_I − Σ_K flux_K G_qI,K.
+inline void scatter(std::span<const TableEntry> row, const Gradient<>& flux, Vector4* f) {
+  const Gradient<> local = flux;
+  for (const TableEntry& entry : row) f[entry.particle] -= contracted(entry, local);
 }
 
-/// Two fluxes in one sweep.
-inline void scatter(std::span<const TableEntry> row, const Gradient& flux, const Gradient& other, Vector4* f, Vector4* g) {
-  for (const TableEntry& entry : row) {
-    Vector4 a = entry.gradient[0] * flux.column[0], b = entry.gradient[0] * other.column[0];
-    for (int K = 1; K < 3; ++K) {
-      a += entry.gradient[K] * flux.column[K];
-      b += entry.gradient[K] * other.column[K];
-    }
-    f[entry.particle] -= a;
-    g[entry.particle] -= b;
-  }
+/// The same with a force held for each pair: f_I ← f_I − held − Σ_K flux_K G_qI,K.
+inline void scatter(std::span<const TableEntry> row, const Gradient<>& flux, const Vector4* held, Vector4* f) {
+  const Gradient<> local = flux;
+  for (const TableEntry& entry : row) f[entry.particle] -= contracted(entry, local) + *held++;
+}
+
+/// Asks for a row that will be needed soon, so that it comes from memory while other rows are computed.
+inline void prefetch(std::span<const TableEntry> row) {
+#if defined(__GNUC__)
+  for (std::size_t k = 0; k < row.size(); k += 2) __builtin_prefetch(row.data() + k);
+#endif
 }
 
 /// Energy and dissipated power of the stabilisation of one point.
@@ -82,22 +99,23 @@ struct StabilizationPower {
 
 /// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
 ///   r_J = u_J − u_I − (F_q − 1) ΔX_J,   energy ½ κ Σ_J w_J |r_J|²,   force from κ w_J (r_J + τ ṙ_J).
-/// Adds the pair forces to f, and subtracts from `flux` the part that acts through F_q. Damped: τ > 0, and v, dv count.
+/// Writes the force of each pair to `held`, adds the owner's to f, and subtracts from `flux` the part that acts through
+/// F_q. `motion` holds u of the particles, or (u, v) where the stabilisation is damped, and `gradient` its gradient.
 /// Without periodic directions r_J = (u_J − H X_J) − (u_I − H X_I), which saves the differences of positions.
-template <bool Damped, bool Periodic>
+template <bool Periodic, int N>
 StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, double kappa, double tau, const Vector3& period,
-                             const Vector4* X, const Vector4* u, const Vector4* v, const Gradient& du, const Gradient& dv,
-                             Vector4* f, Gradient& flux) {
-  const Vector4& Xi = X[owner];
-  Vector4 ui = u[owner], vi = Damped ? v[owner] : Vector4::Zero();
+                             const Vector4* X, const Values<N>* motion, const Gradient<N>& gradient, Vector4* held,
+                             Vector4* f, Gradient<>& flux) {
+  const Vector4 Xi = X[owner];
+  const Gradient<N> H = gradient;
+  Values<N> origin = motion[owner];
   if constexpr (!Periodic)
-    for (int K = 0; K < 3; ++K) {
-      ui -= Xi[K] * du.column[K];
-      if constexpr (Damped) vi -= Xi[K] * dv.column[K];
-    }
-  Vector4 total = Vector4::Zero(), energy = Vector4::Zero(), rate = Vector4::Zero();
-  Gradient moment;
-  for (const TableEntry& entry : row) {
+    for (int K = 0; K < 3; ++K) origin -= Xi[K] * H.column[K];
+
+  struct Sums {
+    Values<N> force = Values<N>::Zero(), energy = Values<N>::Zero(), moment[3] = {force, force, force};
+  };
+  const auto visit = [&](const TableEntry& entry, Sums& sums, Vector4& pair_force) {
     const double w = kappa * static_cast<double>(entry.weight);
     const double* XJ = X[entry.particle].data();
     double x[3] = {XJ[0], XJ[1], XJ[2]};
@@ -106,36 +124,42 @@ StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, doubl
         x[k] -= Xi[k];
         if (period[k] > 0.0) x[k] -= period[k] * std::round(x[k] / period[k]);
       }
-    Vector4 r = u[entry.particle] - ui;
-    for (int K = 0; K < 3; ++K) r -= x[K] * du.column[K];
-    Vector4 force = w * r;
-    energy += force.cwiseProduct(r);
-    if constexpr (Damped) {
-      Vector4 s = v[entry.particle] - vi;
-      for (int K = 0; K < 3; ++K) s -= x[K] * dv.column[K];
-      const Vector4 ws = w * s;
-      rate += ws.cwiseProduct(s);
-      force += tau * ws;
-    }
-    f[entry.particle] -= force;
-    total += force;
-    for (int K = 0; K < 3; ++K) moment.column[K] += x[K] * force;
+    Values<N> r = motion[entry.particle] - origin;
+    for (int K = 0; K < 3; ++K) r -= x[K] * H.column[K];
+    const Values<N> force = w * r;
+    sums.energy += force.cwiseProduct(r);
+    sums.force += force;
+    for (int K = 0; K < 3; ++K) sums.moment[K] += x[K] * force;
+    if constexpr (N == 8) pair_force = force.template head<4>() + tau * force.template tail<4>();
+    else pair_force = force;
+  };
+  Sums even, odd;
+  for (std::size_t k = 0; k < row.size(); k += 2) {
+    visit(row[k], even, held[k]);
+    visit(row[k + 1], odd, held[k + 1]);
   }
+  const auto damped = [tau](const Values<N>& a) -> Vector4 {
+    if constexpr (N == 8) return a.template head<4>() + tau * a.template tail<4>();
+    else return a;
+  };
+  const Vector4 total = damped(even.force + odd.force);
   f[owner] += total;
-  for (int K = 0; K < 3; ++K) flux.column[K] -= Periodic ? moment.column[K] : Vector4(moment.column[K] - Xi[K] * total);
-  return {0.5 * energy.sum(), tau * rate.sum()};
+  for (int K = 0; K < 3; ++K) {
+    const Vector4 moment = damped(even.moment[K] + odd.moment[K]);
+    flux.column[K] -= Periodic ? moment : Vector4(moment - Xi[K] * total);
+  }
+  const Values<N> energy = even.energy + odd.energy;
+  if constexpr (N == 8) return {0.5 * energy.template head<4>().sum(), tau * energy.template tail<4>().sum()};
+  else return {0.5 * energy.sum(), 0.0};
 }
 
-/// The same, with the choice of the loop made once per point; v may be null (τ = 0).
-inline StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, double kappa, double tau,
-                                    const Vector3& period, const Vector4* X, const Vector4* u, const Vector4* v,
-                                    const Gradient& du, const Gradient& dv, Vector4* f, Gradient& flux) {
-  if (period.any()) {
-    if (v) return stabilize<true, true>(row, owner, kappa, tau, period, X, u, v, du, dv, f, flux);
-    return stabilize<false, true>(row, owner, kappa, 0.0, period, X, u, v, du, dv, f, flux);
-  }
-  if (v) return stabilize<true, false>(row, owner, kappa, tau, period, X, u, v, du, dv, f, flux);
-  return stabilize<false, false>(row, owner, kappa, 0.0, period, X, u, v, du, dv, f, flux);
+/// The same, with the choice of the loop made once per point.
+template <int N>
+StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, double kappa, double tau, const Vector3& period,
+                             const Vector4* X, const Values<N>* motion, const Gradient<N>& gradient, Vector4* held,
+                             Vector4* f, Gradient<>& flux) {
+  if (period.any()) return stabilize<true>(row, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
+  return stabilize<false>(row, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
 }
 
 }  // namespace tactoid::rows

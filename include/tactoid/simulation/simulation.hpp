@@ -15,6 +15,7 @@
 #include <tactoid/boundary/prescribed_motion.hpp>
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/parallel.hpp>
 #include <tactoid/integrator/integrator.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/body_fields.hpp>
@@ -172,15 +173,21 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
 
   void kick(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
-      previous_velocity_[b] = body.velocity;
-      parallel_for(body.size(), [&](std::size_t i) { body.velocity[i] += (time_step / body.masses()[i]) * body.force[i]; });
+      previous_velocity_[b].resize(body.size());
+      parallel_for(body.size(), [&](std::size_t i) {
+        previous_velocity_[b][i] = body.velocity[i];
+        body.velocity[i] += (time_step / body.masses()[i]) * body.force[i];
+      });
     });
   }
 
   void drift(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
-      previous_[b] = body.displacement;
-      parallel_for(body.size(), [&](std::size_t i) { body.displacement[i] += time_step * body.velocity[i]; });
+      previous_[b].resize(body.size());
+      parallel_for(body.size(), [&](std::size_t i) {
+        previous_[b][i] = body.displacement[i];
+        body.displacement[i] += time_step * body.velocity[i];
+      });
       if (essential_[b].empty()) return;
       ledger_.external_work += essential_[b].impose(time_ + time_step, time_step, last_step_, body.displacement, body.velocity);
       for (std::size_t i = 0; i < body.size(); ++i) body.force[i] += essential_[b].forces()[i];
@@ -217,12 +224,18 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     BodyTotals internal;
     double kinetic = 0.0;
     for_each_body([&](auto& body, std::size_t b) {
-      std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
+      parallel_for(body.size(), [&](std::size_t i) { body.force[i].setZero(); });
       body.particle_values().distribute(fields_[b].force, body.force);
       internal += body.add_internal_forces(last_step_, true);
       check(body);
+      kinetic += parallel_sum(body.size(), [&](std::size_t i) {
+        return 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
+      });
+    });
+    // All bodies are sound: what the step has brought is kept.
+    for_each_body([&](auto& body, std::size_t) {
+      body.accept_histories();
       if constexpr (std::decay_t<decltype(body)>::has_director) advance_director(body, last_step_);
-      for (std::size_t i = 0; i < body.size(); ++i) kinetic += 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
     });
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;

@@ -121,7 +121,7 @@ template <class Body>
         auto row = table.row(q);
         if (is_padding(table, q, table.offsets[q + 1] - 1)) row = row.first(row.size() - 1);
         PointState<double> state;
-        rows::Gradient du, dh;
+        rows::Gradient<> du, dh;
         rows::gather(table.row(q), body.displacement.data(), du);
         if constexpr (Body::has_director) {
           rows::gather(table.row(q), body.director.data(), dh);
