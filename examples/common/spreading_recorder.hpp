@@ -60,6 +60,7 @@ class SpreadingRecorder {
   /// One line of the history.
   template <class S>
   void record(S& simulation) {
+    if (!last_.empty() && last_.front() == simulation.time()) return;
     const Timer timer(seconds_);
     measure(simulation);
     const ParticleFields cell = simulation.template particles<0>();

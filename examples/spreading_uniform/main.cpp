@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
   SpreadingParameters p;
   std::string out = "out/spreading_uniform";
   int threads = thread_count(), frames = 20, samples = 200;
+  double energy_limit = 0.1;
   Options options("spreading_uniform",
                   "A cell adheres to and spreads on a uniform substrate (Zeng and Li, Soft Matter 2012, 8, 5765).");
   p.add_to(options);
@@ -26,6 +27,7 @@ int run(int argc, char** argv) {
   options.add("threads", &threads, Range::between(1, 1024), "Threads");
   options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
   options.add("samples", &samples, Range::between(1, 1000000), "Lines of the history");
+  options.add("max-energy-error", &energy_limit, Range::positive(), "Relative energy error that stops the run");
   if (!options.parse(argc, argv)) return 0;
   set_thread_count(threads);
 
@@ -61,6 +63,16 @@ int run(int argc, char** argv) {
              1e9 * simulation.largest_stable_time_step(), thread_count());
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const double setup = seconds();
+  const auto watch_energy = [&](auto& s) {
+    const double error = s.ledger().error();
+    if (s.steps() < 100 || error <= energy_limit) return;  // at first there is little work to compare with
+    recorder.record(s);
+    recorder.write_frame(s);
+    throw ComputationError(fmt::format(
+        "The energy balance is off by {:.3g} % at t = {:.6g} s, and --max-energy-error allows {:.3g} %; likely causes are "
+        "too weak a stabilisation or too large a time step.",
+        100.0 * error, s.time(), 100.0 * energy_limit));
+  };
   const auto finish = [&](bool completed) {
     progress.finish();
     recorder.write_summary(simulation, seconds() - setup, completed);
@@ -68,7 +80,10 @@ int run(int argc, char** argv) {
   try {
     simulation.run(p.end_time, every(p.end_time / samples, [&](auto& s) { recorder.record(s); }),
                    every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
-                   every_steps(10, [&](auto& s) { progress.update(s.time(), s.steps()); }));
+                   every_steps(10, [&](auto& s) {
+                     progress.update(s.time(), s.steps());
+                     watch_energy(s);
+                   }));
   } catch (const ComputationError&) {
     finish(false);
     throw;

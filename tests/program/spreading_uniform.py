@@ -288,6 +288,18 @@ class BrokenRun(Case):
         self.assertTrue((out / "parameters.toml").exists())
 
 
+    def test_a_run_that_loses_its_energy_stops(self):
+        result = run("--resolution", "0.3", "--end-time", "1us", "--max-energy-error", "1e-9", "--threads", "1", "--out", "out",
+                     folder=self.folder)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertRegex(
+            result.stderr, r"^spreading_uniform: The energy balance is off by \S+ % at t = \S+ s, and --max-energy-error allows 1e-07 %"
+        )
+        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+        self.assertFalse(summary["completed"])
+        self.check_frames(self.folder / "out")
+
+
 if __name__ == "__main__":
     PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main(verbosity=2)
