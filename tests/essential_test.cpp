@@ -168,3 +168,72 @@ TEST_CASE("Statics that cannot succeed say why") {
   CHECK_THROWS_WITH_AS(StaticProblem(body, {fixed(end), fixed(end)}), doctest::Contains("is prescribed twice"),
                        ParameterError);
 }
+
+namespace {
+
+/// Largest difference between the solutions by conjugate gradients and by factorisation, over the displacement.
+template <class Body>
+void check_solvers(const Body& start) {
+  const double by = 0.2 * length;
+  Body direct = start, iterative = start;
+  StaticProblem first(direct, pull(direct.cloud(), by)), second(iterative, pull(iterative.cloud(), by));
+  (void)StaticNewton{}.solve(first);
+  const StaticReport report = StaticNewton{.solver = LinearSolver::conjugate_gradients}.solve(second);
+  CHECK(report.linear_iterations > 10);
+  CHECK_FALSE(report.factorized_lu);
+  double difference = 0.0;
+  for (std::size_t i = 0; i < direct.size(); ++i)
+    difference = std::max(difference, (direct.displacement[i] - iterative.displacement[i]).norm());
+  CHECK(difference < 1e-8 * by);
+  CHECK(second.reaction(1)[0] == test::relative(first.reaction(1)[0]).epsilon(1e-8));
+  // Newton's iteration is quadratic near the solution.
+  REQUIRE(report.residuals.size() >= 3);
+  CHECK(report.residuals.back() == report.residual);
+}
+
+}  // namespace
+
+TEST_CASE("Conjugate gradients find what factorisation finds: values at the particles") {
+  check_solvers(plate(undamped()));
+}
+TEST_CASE("Conjugate gradients find what factorisation finds: coefficients") {
+  check_solvers(plate(GaussCells<2>{}));
+}
+
+TEST_CASE("Conjugate gradients that cannot succeed say why") {
+  auto body = plate(undamped());
+  const auto message = [&](const StaticNewton& newton, std::vector<PrescribedMotion> motions, auto... terms) {
+    auto copy = body;
+    StaticProblem problem(copy, std::move(motions), terms...);
+    try {
+      (void)newton.solve(problem);
+    } catch (const ComputationError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const StaticNewton few{.solver = LinearSolver::conjugate_gradients, .max_linear_iterations = 3};
+  CHECK(message(few, pull(body.cloud(), 0.1 * length)).find("in 3 iterations: allow more (StaticNewton.max_linear_iterations)") !=
+        std::string::npos);
+  CHECK_THROWS_WITH_AS((StaticNewton{.linear_tolerance = 0.0}.validate()), doctest::Contains("linear_tolerance = 0"),
+                       ParameterError);
+  CHECK_THROWS_WITH_AS((StaticNewton{.max_linear_iterations = 0}.validate()),
+                       doctest::Contains("max_linear_iterations = 0"), ParameterError);
+  // A matrix with a negative direction, and conditions given twice.
+  Eigen::SparseMatrix<double> K(2, 2), N(0, 2);
+  K.insert(0, 0) = 1.0;
+  K.insert(1, 1) = 1.0;
+  K.insert(0, 1) = 2.0;
+  K.insert(1, 0) = 2.0;
+  const Eigen::VectorXd f = Eigen::Vector2d(1.0, -1.0);
+  using State = ConstrainedSolution::State;
+  CHECK(projected_conjugate_gradients(K, N, f, Eigen::VectorXd(0), 1e-9, 10).state == State::indefinite);
+  // Where the condition forbids that direction it is positive: x + y = … is free, x − y = 1 is prescribed.
+  N.resize(1, 2);
+  N.insert(0, 0) = 1.0;
+  N.insert(0, 1) = -1.0;
+  const auto held = projected_conjugate_gradients(K, N, f, Eigen::VectorXd::Ones(1), 1e-12, 10);
+  CHECK(held.state == State::converged);
+  CHECK((held.x - Eigen::Vector2d(0.5, -0.5)).norm() < 1e-12);
+  CHECK((K * held.x + N.transpose() * held.multipliers - f).norm() < 1e-12);
+}

@@ -72,6 +72,16 @@ struct Dual {
     const T e = exp(a.value);
     return chain(a, e, e);
   }
+  friend Dual sin(const Dual& a) {
+    using std::cos;
+    using std::sin;
+    return chain(a, sin(a.value), cos(a.value));
+  }
+  friend Dual cos(const Dual& a) {
+    using std::cos;
+    using std::sin;
+    return chain(a, cos(a.value), -sin(a.value));
+  }
   friend Dual abs(const Dual& a) { return a.value < T(0.0) ? -a : a; }
 
  private:

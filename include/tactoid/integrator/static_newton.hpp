@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCholesky>
@@ -11,6 +13,7 @@
 
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/unsatisfied.hpp>
+#include <tactoid/integrator/projected_conjugate_gradients.hpp>
 
 namespace tactoid {
 
@@ -52,22 +55,41 @@ struct StaticReport {
   int iterations = 0;          ///< over all load steps
   double residual = 0.0;       ///< unbalanced force over the scale of the forces, at the end
   bool factorized_lu = false;  ///< the matrix was not positive definite and symmetric
+  int linear_iterations = 0;   ///< of the conjugate gradients, over all iterations
+  /// The residual before each iteration of the last load step, and at its end: near the solution each is about the
+  /// square of the one before.
+  std::vector<double> residuals;
+};
+
+/// How the linear systems of Newton's method are solved.
+enum class LinearSolver {
+  direct,              ///< factorisation: any matrix, to round-off; time and memory grow fast in three dimensions
+  conjugate_gradients  ///< projected_conjugate_gradients: large bodies; needs a symmetric, positive definite stiffness
 };
 
 /// Equilibrium by Newton's method with a consistent tangent, a backtracking line search and load steps. Conditions on
 /// values are eliminated and the rest is solved by LDLᵀ (by LU where the matrix is not symmetric and positive
-/// definite); conditions on an interpolated field are met by Lagrange multipliers, with LU.
+/// definite); conditions on an interpolated field are met by Lagrange multipliers, with LU. For large bodies
+///   StaticNewton{.solver = LinearSolver::conjugate_gradients}
+/// needs no factorisation, in either case. It throws ComputationError where the stiffness is not symmetric or not
+/// positive definite (follower loads, buckling), and where it does not converge.
 struct StaticNewton {
   double tolerance = 1e-11;  ///< unbalanced force over the scale of the forces; > 0
   int max_iterations = 30;   ///< per load step
   int load_steps = 1;        ///< equal parts in which loads and prescribed displacements are applied
   int max_cuts = 12;         ///< halvings of a Newton step that inverts a point or does not reduce the residual
+  LinearSolver solver = LinearSolver::direct;
+  double linear_tolerance = 1e-9;     ///< of the conjugate gradients, relative to the residual of the start; in (0, 1)
+  int max_linear_iterations = 20000;  ///< of the conjugate gradients, per iteration of Newton's method
 
   void validate() const {
     require_positive("StaticNewton.tolerance", tolerance);
     if (max_iterations < 1) reject("StaticNewton.max_iterations", max_iterations, "", "at least 1");
     if (load_steps < 1) reject("StaticNewton.load_steps", load_steps, "", "at least 1");
     if (max_cuts < 0) reject("StaticNewton.max_cuts", max_cuts, "", "zero or positive");
+    if (!(linear_tolerance > 0.0 && linear_tolerance < 1.0))
+      reject("StaticNewton.linear_tolerance", linear_tolerance, "", "between 0 and 1");
+    if (max_linear_iterations < 1) reject("StaticNewton.max_linear_iterations", max_linear_iterations, "", "at least 1");
   }
 
   /// Brings the problem to equilibrium under its full load. Throws ComputationError where that fails.
@@ -94,10 +116,12 @@ struct StaticNewton {
     if (!problem.evaluate()) fail(fraction, 0, 0.0, "a point is inverted before the first iteration");
     Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(problem.conditions().rows());
     double unbalanced = residual(problem, multipliers), last_step = 0.0;
+    report.residuals.clear();
     for (int iteration = 0;; ++iteration) {
       const Eigen::VectorXd defect = problem.defect();
       const double scale = std::max(problem.force_scale(), multipliers.norm());
       report.residual = scale > 0.0 ? unbalanced / scale : 0.0;
+      report.residuals.push_back(report.residual);
       // Forces are known to the round-off of the positions: a step below that is the last one.
       const bool settled = iteration > 1 && last_step <= 1e-13 * problem.length();
       if (iteration > 0 && (report.residual <= tolerance || settled) && small(defect, problem)) break;
@@ -147,12 +171,40 @@ struct StaticNewton {
   }
 
   template <class Problem>
-  static Update newton_update(Problem& problem, const Eigen::VectorXd& defect, double fraction, int iteration,
-                              StaticReport& report) {
+  Update newton_update(Problem& problem, const Eigen::VectorXd& defect, double fraction, int iteration,
+                       StaticReport& report) const {
     const Eigen::SparseMatrix<double> K = problem.stiffness();
     const Eigen::SparseMatrix<double>& N = problem.conditions();
     Update update;
     bool solved = false;
+    if (solver == LinearSolver::conjugate_gradients) {
+      if (!symmetric(K))
+        fail(fraction, iteration, report.residual,
+             "the stiffness is not symmetric, and conjugate gradients need that: use LinearSolver::direct");
+      ConstrainedSolution solution =
+          projected_conjugate_gradients(K, N, problem.forces(), defect, linear_tolerance, max_linear_iterations);
+      report.linear_iterations += solution.iterations;
+      using State = ConstrainedSolution::State;
+      switch (solution.state) {
+        case State::converged: break;
+        case State::not_converged:
+          fail(fraction, iteration, report.residual,
+               fmt::format("the conjugate gradients reached {:.1e} of their first residual in {} iterations: allow more "
+                           "(StaticNewton.max_linear_iterations), or use LinearSolver::direct",
+                           solution.residual, solution.iterations));
+        case State::indefinite:
+          fail(fraction, iteration, report.residual,
+               "the stiffness is not positive definite, and conjugate gradients need that: a rigid motion is left "
+               "free, or the body buckles; use more StaticNewton.load_steps, or LinearSolver::direct");
+        case State::dependent:
+          fail(fraction, iteration, report.residual,
+               "the conditions are not independent for the interpolated field: prescribe fewer particles");
+      }
+      update.du = std::move(solution.x);
+      update.multipliers = -solution.multipliers;
+      if (problem.conditions_are_values()) update.multipliers.setZero();
+      return update;
+    }
     if (problem.conditions_are_values()) {
       update.multipliers.setZero(N.rows());
       update.du = N.transpose() * defect;
@@ -206,10 +258,14 @@ struct StaticNewton {
     return update;
   }
 
+  static bool symmetric(const Eigen::SparseMatrix<double>& A) {
+    const Eigen::SparseMatrix<double> transposed = A.transpose();
+    return (A - transposed).norm() <= 1e-9 * A.norm();
+  }
+
   static bool solve_linear(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& right, Eigen::VectorXd& x,
                            StaticReport& report) {
-    const Eigen::SparseMatrix<double> transposed = A.transpose();
-    if ((A - transposed).norm() <= 1e-9 * A.norm()) {
+    if (symmetric(A)) {
       const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(A);
       if (ldlt.info() == Eigen::Success && ldlt.vectorD().minCoeff() > 0.0) {
         x = ldlt.solve(right);
@@ -231,7 +287,8 @@ struct StaticNewton {
     return true;
   }
 
-  [[noreturn]] static void fail(double fraction, int iteration, double residual, const char* cause) {
+  [[noreturn]] static void fail(double fraction, int iteration, double residual,
+                                const std::string& cause) {
     throw ComputationError(fmt::format(
         "StaticNewton found no equilibrium at {:.4g} of the load: relative residual {:.2e} after {} iterations; {}.",
         fraction, residual, iteration, cause));

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <tactoid/simulation/energy_ledger.hpp>
+
+namespace tactoid {
+
+/// An observer that records how well a run keeps its books: the largest energy error after any step, and when.
+///
+///   EnergyWatch watch;
+///   simulation.run(1_ms, watch);
+///   watch.largest_error < 1e-3
+///
+/// A defect that is not a number counts as infinite. May be given to several runs of a simulation.
+struct EnergyWatch {
+  double largest_error = 0.0;   ///< of EnergyLedger::error(): |defect| over the largest work done until then
+  double largest_defect = 0.0;  ///< |total + dissipated − external work − initial|, J
+  double time = 0.0;            ///< of the largest defect, s
+  EnergyLedger last = {};       ///< the ledger after the last step
+
+  template <class S>
+  void begin(S& simulation) {
+    after_step(simulation);
+  }
+  template <class S>
+  void after_step(S& simulation) {
+    last = simulation.ledger();
+    const double defect = std::isnan(last.defect()) ? std::numeric_limits<double>::infinity() : std::abs(last.defect());
+    if (defect > largest_defect) {
+      largest_defect = defect;
+      time = simulation.time();
+    }
+    largest_error = std::max(largest_error, std::isfinite(defect) ? last.error() : defect);
+  }
+  template <class S>
+  void end(S&) {}
+  template <class S>
+  void last_good_state(S&) {}
+  template <class S>
+  [[nodiscard]] double next_time(const S&) const {
+    return std::numeric_limits<double>::infinity();
+  }
+
+  /// |defect| over the largest work of the whole run: 0 at the start, where the error of the ledger is 0/0.
+  [[nodiscard]] double error() const { return last.largest_work > 0.0 ? largest_defect / last.largest_work : 0.0; }
+};
+
+}  // namespace tactoid
