@@ -48,8 +48,10 @@ Bounces bounce(int cells, double speed, CentralDifference integrator, HistoryWri
                      momentum = now.momentum[2];
                      b.final_error = s.ledger().defect() / scale;
                      b.error = std::max(b.error, std::abs(b.final_error));
-                     b.deepest = std::min(b.deepest, s.ledger().adhesion / scale);
-                     if (table) table->write(std::array{s.time(), now.center_of_mass[2], b.final_error, s.ledger().kinetic / scale, s.ledger().adhesion / scale});
+                     // Terms on a boundary count as surface energies: what is not that of the body force is adhesion.
+                     const double adhesion = (s.ledger().surface - now.mass * gravity * now.center_of_mass[2]) / scale;
+                     b.deepest = std::min(b.deepest, adhesion);
+                     if (table) table->write(std::array{s.time(), now.center_of_mass[2], b.final_error, s.ledger().kinetic / scale, adhesion});
                    }));
   return b;
 }
