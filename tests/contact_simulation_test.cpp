@@ -69,3 +69,15 @@ TEST_CASE("a ball bounces off a rigid plate: the plate feels the change of momen
   CHECK(std::abs(change + impulse) < 1e-10 * std::abs(change));
   CHECK(simulation.ledger().error() < 1e-4);
 }
+
+TEST_CASE("a ball that hits a plate fast, with large steps, gains no energy") {
+  // In ten steps the surface crosses the wall, whose stiffness rises from nothing to more than the ball's own: the step
+  // must follow at once.
+  Simulation simulation{Bodies{elastic_ball("ball", 2.3e-6, -0.4)}, Contacts{},
+                        Boundaries{on<0>(RigidPlate{.law = LigandReceptorLaw{}})}, CentralDifference{}};
+  const double initial = simulation.ledger().total();
+  double error = 0.0;
+  simulation.run(10e-6, every_steps(1, [&](auto& s) { error = std::max(error, std::abs(s.ledger().defect())); }));
+  MESSAGE("energy error ", error / initial, " of the kinetic energy, ", simulation.steps(), " steps");
+  CHECK(error < 0.1 * initial);
+}

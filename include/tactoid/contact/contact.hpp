@@ -14,7 +14,8 @@ namespace tactoid {
 /// checks parameters and builds search structures. `apply` is called once in every step: it adds forces to both
 /// bodies and returns its energy. `apply` must give the same bits for any number of threads; it may keep state
 /// (tracked closest points), but its result may depend on the positions alone.
-/// `stiffness_rate(a, b)` bounds ω² = k/m (1/s²) of the interaction at the present gaps, for the stable step.
+/// `stiffness_rate(a, b)` bounds ω² = k/m (1/s²) of the interaction at the present gaps, for the stable step: called after
+/// every `apply`.
 template <class C, int D>
 concept Contact =
     (requires(C& c, const PointCloud<D>& cloud, const ParticleFields& fields) {

@@ -203,13 +203,11 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void evaluate() {
     TermEnergy contact_energy, boundary_energy;
     for_each_body([&](auto& body, std::size_t b) { fields_[b].refresh(body, last_step_); });
-    const bool measure_rates = steps_ % rate_interval == 0;
-    if (measure_rates) term_rates_.fill(0.0);
+    term_rates_.fill(0.0);
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
       const ParticleFields a = fields_[Pair::first].view(), b = fields_[Pair::second].view();
       contact_energy += between.contact.apply(a, b, time_);
-      if (!measure_rates) return;
       const double rate = between.contact.stiffness_rate(a, b);
       term_rates_[Pair::first] += rate;
       term_rates_[Pair::second] += rate;
@@ -218,7 +216,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if constexpr (!is_motion<decltype(on)>) {
         constexpr std::size_t b = std::decay_t<decltype(on)>::body;
         boundary_energy += on.term.apply(fields_[b].view(), time_);
-        if (measure_rates) term_rates_[b] += on.term.stiffness_rate(fields_[b].view());
+        term_rates_[b] += on.term.stiffness_rate(fields_[b].view());
       }
     });
     BodyTotals internal;
@@ -258,8 +256,6 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
 
  private:
-  static constexpr std::size_t rate_interval = 20;  // steps between two estimates of the contacts' stiffness
-
   template <class Place>
   static constexpr bool is_motion = std::is_same_v<std::decay_t<decltype(std::declval<Place>().term)>, PrescribedMotion>;
 
