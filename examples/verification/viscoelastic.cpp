@@ -39,9 +39,7 @@ template <>
 struct Named<SecondInvariant> {
   static constexpr const char* name = "I2";
   static constexpr double rest_bracket = a1;
-  static double bracket(const Tensor3& C) {
-    return a1 + a2 * (0.5 * (C.trace() * C.trace() - (C * C).trace()) - 3.0);
-  }
+  static double bracket(const Tensor3& C) { return a1 + a2 * (0.5 * (C.trace() * C.trace() - (C * C).trace()) - 3.0); }
 };
 
 /// Storage and loss modulus.
@@ -63,7 +61,9 @@ struct Moduli {
 
 /// Maxwell element of modulus B and relaxation time A₃ at w = ω A₃ (J. D. Ferry, Viscoelastic Properties of Polymers,
 /// 1980, ch. 3): B w²/(1 + w²), B w/(1 + w²).
-[[nodiscard]] Moduli maxwell(double B, double w) { return {B * w * w / (1.0 + w * w), B * w / (1.0 + w * w)}; }
+[[nodiscard]] Moduli maxwell(double B, double w) {
+  return {B * w * w / (1.0 + w * w), B * w / (1.0 + w * w)};
+}
 
 /// The law alone under F = 1 + e sin(ωt) direction, in `steps` steps per cycle; of P_ij less its elastic part.
 template <class Invariant>
@@ -94,7 +94,7 @@ template <class Invariant>
   const double edge = 40e-6;
   const PointCloud<3> cloud = jitter(box({.size = {edge, edge, edge}, .cells = {2, 2, 2}}), 0.2);
   const auto is_top = [&](const Point<3>& X) { return X[1] > edge * (1.0 - 1e-9); };
-  const auto top = select(cloud, is_top), rest = select(cloud, [&](const Point<3>& X) { return !is_top(X); });
+  const auto top = select(cloud, is_top), rest = select(cloud, [&](const Point<3>&X) { return !is_top(X); });
   const Solid<Invariant> law{.a1 = a1, .a2 = a2, .a3 = a3};
   Body cube{"cube", cloud, Rkpm<3>{}, NodalCentroids{}, Materials{Region{"body", law}}};
   Simulation simulation{Bodies{std::move(cube)}, Contacts{}, Boundaries{on<0>(affine(top, F)), on<0>(affine(rest, F))},
@@ -156,8 +156,8 @@ void study_invariant(Report& report, Level level) {
   double worst = 0.0;
   for (const Traction& now : held) {
     const double exact = held[0].branch.norm() * std::exp(-(now.time - held[0].time) / a3);
-    worst = std::max(worst, (now.branch - held[0].branch / held[0].branch.norm() * exact).norm() /
-                                held[0].branch.norm());
+    worst =
+        std::max(worst, (now.branch - held[0].branch / held[0].branch.norm() * exact).norm() / held[0].branch.norm());
     relaxation.write(std::array{now.time, now.branch.norm(), exact});
   }
   report.at_most(I + ": step strain of a block, branch less exp(-t/A3), over the first", worst, 1e-11,
