@@ -286,6 +286,7 @@ struct Run {
     body.velocity[i] =
         Vector4(0.2 * std::sin(K * X[1]) + squeeze * std::sin(K * X[0]), -0.1 * std::sin(K * X[0]), 0.0, 0.0);
   }
+  simulation.evaluate();  // the viscous forces of these velocities
   Run run;
   double work = 0.0, expansion = 0.0, dissipated = 0.0, start = 0.0, start_fluid = 0.0;
   Balance last;
