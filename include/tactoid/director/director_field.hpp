@@ -10,12 +10,13 @@
 namespace tactoid {
 
 /// The laws of the director field: Zeng and Li, Soft Matter 2012, 8, 5765, eqns (2), (3), (10), divided by ρᵈ:
-///   Dh/Dt = A(L) h + D {∇²h − r(h)},   D = γ/ρᵈ
+///   Dh/Dt = A(L) h + (γ/ρᵈ) {∇²h − r(h)}
+/// ρᵈ is a density: J ρᵈ, per reference volume, does not change. D = γ/ρᵈ at J = 1, so a body has γ/ρᵈ = D J.
 template <ObjectiveRate Rate = Corotational>
 struct DirectorField {
   using rate = Rate;
 
-  double diffusivity = 1.0e-7;  ///< D = γ/ρᵈ, m²/s
+  double diffusivity = 1.0e-7;  ///< D = γ/ρᵈ at J = 1, m²/s
   double core_size = 0.5e-6;    ///< ε_d, m: the size of a defect's core
 
   /// Throws ParameterError unless diffusivity >= 0 and core_size > 0, both finite.
