@@ -117,7 +117,7 @@ class PressedBody {
 
   /// Equilibrium with the plate at height z (m), from the present state. False if Newton's method does not get there;
   /// `largest_change` (m) limits a step at the surface.
-  bool solve(double z, double largest_change, int iterations = 100) {
+  bool solve(double z, double largest_change, int iterations = 260) {
     contact_.surface.point = Vector3(0.0, 0.0, z);
     for (int iteration = 0; iteration < iterations; ++iteration) {
       double scale = 0.0;
@@ -125,14 +125,14 @@ class PressedBody {
       if (!residual.allFinite()) return false;
       if (residual.norm() < 1e-8 * scale) return true;
       const Eigen::VectorXd w = factor_.solve(residual);
-      const Eigen::MatrixXd k = contact_stiffness();
+      // Newton's steps at first; where they do not settle, a stretch of steps without the law's softening: those go
+      // downhill in energy, through a jump of the rim of the contact too.
+      const Eigen::MatrixXd k = contact_stiffness(iteration % 80 >= 20);
       const auto m = static_cast<Eigen::Index>(touching_.size());
       Eigen::VectorXd at_surface(m);
       for (Eigen::Index i = 0; i < m; ++i) at_surface[i] = w[z_of(i)];
       const Eigen::VectorXd change = (Eigen::MatrixXd::Identity(m, m) + compliance_ * k).partialPivLu().solve(at_surface);
-      // Where steps to and fro do not end, smaller ones find the way.
-      const double limit = largest_change * std::pow(0.95, std::max(0, iteration - 15));
-      const double part = std::min(1.0, limit / change.cwiseAbs().maxCoeff());
+      const double part = std::min(1.0, largest_change / change.cwiseAbs().maxCoeff());
       const Eigen::VectorXd du = part * (w - response_ * (k * change));
       for (std::size_t i = 0; i < body_.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c)
@@ -168,8 +168,8 @@ class PressedBody {
     return sum;
   }
 
-  /// ∂(push down)/∂(height) between the particles that can touch, N/m.
-  [[nodiscard]] Eigen::MatrixXd contact_stiffness() const {
+  /// ∂(push down)/∂(height) between the particles that can touch, N/m; positive semi-definite `without_softening`.
+  [[nodiscard]] Eigen::MatrixXd contact_stiffness(bool without_softening) const {
     const auto m = static_cast<Eigen::Index>(touching_.size());
     Eigen::MatrixXd k = Eigen::MatrixXd::Zero(m, m);
     for (std::size_t q = 0; q < quadrature_.size(); ++q) {
@@ -178,7 +178,8 @@ class PressedBody {
       double height = 0.0;
       for (std::size_t a = 0; a < nodes.size(); ++a) height += shape[a] * fields_.position[nodes[a]][2];
       const double gap = contact_.surface.point[2] - height, d = 1e-7 * part_.positions[nodes[0]].norm();
-      const double slope = (contact_.law.traction(gap + d) - contact_.law.traction(gap - d)) / (2.0 * d);
+      double slope = (contact_.law.traction(gap + d) - contact_.law.traction(gap - d)) / (2.0 * d);
+      if (without_softening) slope = std::min(slope, 0.0);
       for (std::size_t a = 0; a < nodes.size(); ++a)
         for (std::size_t b = 0; b < nodes.size(); ++b)
           if (column_[nodes[a]] >= 0 && column_[nodes[b]] >= 0)
