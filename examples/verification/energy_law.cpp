@@ -313,7 +313,7 @@ struct Run {
 }
 
 void study_motion(Report& report, Level level) {
-  const int cells = level == Level::full ? 24 : 12, steps = level == Level::full ? 2000 : 500;
+  const int cells = level == Level::full ? 24 : 12, steps = level == Level::full ? 2000 : 1000;
   NematicGel<> soft = gel;
   soft.bulk_modulus = 1e3;
   const auto runs =
