@@ -26,12 +26,13 @@ constexpr double pi = std::numbers::pi;
 const double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // --- a rigid sphere --------------------------------------------------------------------------------------------------
-// A ring of a sphere has the area dA = 2πR dg, whatever its gap g to the plate (Archimedes): the law's traction per area
-// of the sphere, along the plate's normal, sums up to F = 2πR [w(D) − w(D + 2R)] exactly, with the law's potential w.
-// Derjaguin's approximation is the first part. w is N_b Φ shifted to zero at the cutoff, by 0.005 N_b σ_b at 20 ε.
+// A ring of a sphere has the area dA = 2πR dg, whatever its gap g to the plate (Archimedes): the law's traction per
+// area of the sphere, along the plate's normal, sums up to F = 2πR [w(D) − w(D + 2R)] exactly, with the law's potential
+// w. Derjaguin's approximation is the first part. w is N_b Φ shifted to zero at the cutoff, by 0.005 N_b σ_b at 20 ε.
 
 /// Push of a rigid sphere on the plate in the gap D below it, N.
-[[nodiscard]] double rigid_sphere_force(const PointCloud<3>& cloud, double top, double gap, const LigandReceptorLaw& law) {
+[[nodiscard]] double rigid_sphere_force(const PointCloud<3>& cloud, double top, double gap,
+                                        const LigandReceptorLaw& law) {
   BodyFields fields = at_rest(cloud);
   OnRigid<LigandReceptorLaw, RigidPlane> plate{
       .law = law, .surface = {.point = Vector3(0.0, 0.0, top + gap), .normal = -Vector3::UnitZ()}};
@@ -47,7 +48,8 @@ void derjaguin(Report& report, Level level) {
   const int fine = level == Level::full ? 16 : 12;
   std::vector<double> worst;
   for (const int cells : {fine / 2, fine}) {
-    const PointCloud<3> octant = on_sphere(graded_octant(R, 0.75 * std::sqrt(R * law.range), cells, 1.0 + 0.8 / cells), R);
+    const PointCloud<3> octant =
+        on_sphere(graded_octant(R, 0.75 * std::sqrt(R * law.range), cells, 1.0 + 0.8 / cells), R);
     double error = 0.0, scale = 0.0;
     for (double d = 0.2; d < 6.0; d *= 1.25) {
       const double D = d * law.range, force = 4.0 * rigid_sphere_force(octant, R, D, law);
@@ -62,7 +64,8 @@ void derjaguin(Report& report, Level level) {
   }
   report.at_most("rigid sphere, R = 400 eps: largest error over the gaps 0.2 to 6 eps", worst[1], 1e-2,
                  "2 pi R [w(D) - w(D + 2R)], exact for a traction per area of the sphere");
-  report.at_least("rigid sphere: order of the error in the spacing", std::log2(worst[0] / worst[1]), 1.8, "bilinear facets: 2");
+  report.at_least("rigid sphere: order of the error in the spacing", std::log2(worst[0] / worst[1]), 1.8,
+                  "bilinear facets: 2");
   const PointCloud<3> octant = on_sphere(graded_octant(R, 0.75 * std::sqrt(R * law.range), fine, 1.0 + 0.8 / fine), R);
   report.compare("rigid sphere, R = 400 eps: pull at D = eps, N", -4.0 * rigid_sphere_force(octant, R, law.range, law),
                  2.0 * pi * R * law.bond_density * law.binding_energy, 0.01, "2 pi R N_b sigma_b (Derjaguin 1934)");
@@ -73,9 +76,10 @@ void derjaguin(Report& report, Level level) {
     const PointCloud<3> sphere = ball({.radius = radius, .core_cells = 24, .shells = 0});
     const double force = -rigid_sphere_force(sphere, radius, whole.range, whole);
     const double limit = 2.0 * pi * radius * whole.bond_density * whole.binding_energy;
-    const double exact = 2.0 * pi * radius * (whole.potential(whole.range + 2.0 * radius) - whole.potential(whole.range));
-    report.compare(fmt::format("rigid sphere, R = {:g} eps, all of it in reach: pull at eps over Derjaguin's", ratio), force / limit,
-                   exact / limit, 1e-3, "1 - 2 (1 + 2R/eps)^-2 + (1 + 2R/eps)^-4");
+    const double exact =
+        2.0 * pi * radius * (whole.potential(whole.range + 2.0 * radius) - whole.potential(whole.range));
+    report.compare(fmt::format("rigid sphere, R = {:g} eps, all of it in reach: pull at eps over Derjaguin's", ratio),
+                   force / limit, exact / limit, 1e-3, "1 - 2 (1 + 2R/eps)^-2 + (1 + 2R/eps)^-4");
   }
 }
 
@@ -113,7 +117,8 @@ void tabor(Report& report, Level level) {
     const LigandReceptorLaw unit{.bond_density = 1.0, .binding_energy = 1.0, .range = 1.0};
     AdhesiveHalfSpace half_space([&](double H) { return unit.traction(H); }, number, 6.5 + 0.3 * number, 150);
     half_space.settle(start);
-    const double reference = 2.0 * pull_off_force([&](double H0) { return half_space.pull(H0); }, start, step, [](double, double) {});
+    const double reference =
+        2.0 * pull_off_force([&](double H0) { return half_space.pull(H0); }, start, step, [](double, double) {});
 
     // The same for the ball; its bulk gives way too, which changes the separations, not the pull.
     pressed.reset();
@@ -131,24 +136,27 @@ void tabor(Report& report, Level level) {
     const std::string what = fmt::format("pull-off over pi R W, Tabor's number {:g}", number);
     if (number > 1.0) {
       // The rim of the contact is a few cells wide no more, and is held by the lattice until it jumps.
-      report.note(what, pull, reference, "paraboloid on a half-space, same law (method of Greenwood 1997); rim not resolved");
+      report.note(what, pull, reference,
+                  "paraboloid on a half-space, same law (method of Greenwood 1997); rim not resolved");
       curve.write(std::array{number, pull, reference});
       continue;
     }
     report.compare(what, pull, reference, 0.02, "paraboloid on a half-space, same law (method of Greenwood 1997)");
-    if (number == numbers.front()) report.compare("pull-off over pi R W, Tabor's number near 0", pull, 2.0, 0.02, "2 (Bradley, DMT)");
+    if (number == numbers.front())
+      report.compare("pull-off over pi R W, Tabor's number near 0", pull, 2.0, 0.02, "2 (Bradley, DMT)");
     curve.write(std::array{number, pull, reference});
     falls = falls && pull < before;
     before = pull;
   }
-  report.at_least("pull-off falls from DMT (2) towards JKR (1.5) as the ball softens", falls ? 1.0 : 0.0, 1.0, "Tabor 1977");
+  report.at_least("pull-off falls from DMT (2) towards JKR (1.5) as the ball softens", falls ? 1.0 : 0.0, 1.0,
+                  "Tabor 1977");
   // The theory goes on to JKR: its own check.
   const LigandReceptorLaw unit{.bond_density = 1.0, .binding_energy = 1.0, .range = 1.0};
   AdhesiveHalfSpace half_space([&](double H) { return unit.traction(H); }, 3.0, 7.4, 150);
   half_space.settle(-3.1);
   report.note("pull-off over pi R W on the half-space, Tabor's number 3",
-              2.0 * pull_off_force([&](double H0) { return half_space.pull(H0); }, -3.1, 0.1, [](double, double) {}), 1.5,
-              "JKR, for an infinite number");
+              2.0 * pull_off_force([&](double H0) { return half_space.pull(H0); }, -3.1, 0.1, [](double, double) {}),
+              1.5, "JKR, for an infinite number");
 }
 
 // --- repulsion -------------------------------------------------------------------------------------------------------
@@ -180,21 +188,19 @@ struct Drag {
 };
 
 struct Press {
-  double force = 0.0;      ///< on the plate, of the whole ball, N
-  double depth = 0.0;      ///< of the plate, less the wall's own compliance, m
-  double restless = 0.0;   ///< kinetic energy over strain energy at the end
+  double force = 0.0;     ///< on the plate, of the whole ball, N
+  double depth = 0.0;     ///< of the plate, less the wall's own compliance, m
+  double restless = 0.0;  ///< kinetic energy over strain energy at the end
   std::size_t particles = 0;
 };
 
 /// Presses a plate into the pole by `depth` in the dynamics of the library, with drag, and waits until all is at rest.
-/// The octant's cut planes are held by symmetry: a ball between two plates. A wall of the penalty k is an elastic layer:
-/// it adds dU/dF to the depth, with its energy U ~ F^{4/3} under Hertz's pressure, so (4/3) U/F.
+/// The octant's cut planes are held by symmetry: a ball between two plates. A wall of the penalty k is an elastic
+/// layer: it adds dU/dF to the depth, with its energy U ~ F^{4/3} under Hertz's pressure, so (4/3) U/F.
 [[nodiscard]] Press press(double depth, double core, int cells, double penalty) {
   auto body = octant_body(core, cells, 1.0 + 0.8 / cells);
   PointCloud<3> part = on_sphere(body.cloud(), radius);
-  const auto plane = [&](int k) {
-    return select(body.cloud(), [k](const Point<3>& X) { return X[k] == 0.0; });
-  };
+  const auto plane = [&](int k) { return select(body.cloud(), [k](const Point<3>& X) { return X[k] == 0.0; }); };
   const auto x = plane(0), y = plane(1), z = plane(2);
   const double transit = radius / std::sqrt(young / 1000.0), ramp = 3.0 * transit, end = 8.0 * transit;
   // The library asks the wall for its stiffness every 20 steps only: first touches in between need a cap of the step.
@@ -223,8 +229,8 @@ struct Press {
           simulation.ledger().kinetic / simulation.ledger().strain, simulation.template body<0>().size()};
 }
 
-/// Hertz: F = (4/3) E* √R δ^{3/2}. A ball between two plates, of a contact radius of 0.022 R, is 0.52 % stiffer than that:
-/// its linear elasticity in Legendre polynomials under Hertz's pressure (ν = 0.3) gives δ/δ_Hertz = 0.9965.
+/// Hertz: F = (4/3) E* √R δ^{3/2}. A ball between two plates, of a contact radius of 0.022 R, is 0.52 % stiffer than
+/// that: its linear elasticity in Legendre polynomials under Hertz's pressure (ν = 0.3) gives δ/δ_Hertz = 0.9965.
 void hertz(Report& report, Level level) {
   const double plane_strain = young / (1.0 - poisson * poisson);
   const double depth = 5e-4 * radius, a = std::sqrt(radius * depth);
@@ -238,16 +244,20 @@ void hertz(Report& report, Level level) {
     const double spacing = 1.4 * 0.85 / cells;
     ratios.push_back(p.force / theory);
     table.write(std::array{spacing, ratios.back()});
-    const std::string what = fmt::format("force over Hertz's at 0.05 % indentation, spacing {:.2f} a, {} particles", spacing, p.particles);
-    if (cells == 12) report.compare(what, ratios.back(), 1.0, 0.02, "(4/3) E* R^1/2 delta^3/2 (Hertz 1882)");
-    else report.note(what, ratios.back(), 1.0, "Hertz 1882");
+    const std::string what =
+        fmt::format("force over Hertz's at 0.05 % indentation, spacing {:.2f} a, {} particles", spacing, p.particles);
+    if (cells == 12)
+      report.compare(what, ratios.back(), 1.0, 0.02, "(4/3) E* R^1/2 delta^3/2 (Hertz 1882)");
+    else
+      report.note(what, ratios.back(), 1.0, "Hertz 1882");
     report.at_most("kinetic over strain energy when the force is read", p.restless, 1e-5, "at rest");
   }
   constexpr double whole_ball = 1.0052;
   const std::size_t last = ratios.size() - 1;
-  report.at_least("order of the error of the force in the spacing", std::log((whole_ball - ratios[last - 1]) / (whole_ball - ratios[last])) /
-                      std::log(static_cast<double>(resolutions[last]) / resolutions[last - 1]), 1.0,
-                  "against the whole ball, 1.0052");
+  report.at_least("order of the error of the force in the spacing",
+                  std::log((whole_ball - ratios[last - 1]) / (whole_ball - ratios[last])) /
+                      std::log(static_cast<double>(resolutions[last]) / resolutions[last - 1]),
+                  1.0, "against the whole ball, 1.0052");
 }
 
 /// A ball compressed by 30 %: each resolution against the finest.
@@ -260,12 +270,14 @@ void compression(Report& report, Level level) {
     const Press p = press(depth, 0.9 * radius, cells, 10.0 * young / (0.05 * radius));
     ratios.push_back(p.force / hertz_force);
     table.write(std::array{static_cast<double>(cells), static_cast<double>(p.particles), ratios.back()});
-    report.note(fmt::format("force over Hertz's at 30 % compression, {} particles in the octant", p.particles), ratios.back(), unknown,
-                "Hertz is for small indentations");
+    report.note(fmt::format("force over Hertz's at 30 % compression, {} particles in the octant", p.particles),
+                ratios.back(), unknown, "Hertz is for small indentations");
   }
   const double coarse = std::abs(ratios[1] / ratios[0] - 1.0), fine = std::abs(ratios[2] / ratios[1] - 1.0);
-  report.at_most("30 % compression: change of the force from the middle to the finest spacing", fine, 0.04, "convergence");
-  report.at_most("30 % compression: that change over the one before", fine / coarse, 0.6, "convergence: 1/2 for order 1");
+  report.at_most("30 % compression: change of the force from the middle to the finest spacing", fine, 0.04,
+                 "convergence");
+  report.at_most("30 % compression: that change over the one before", fine / coarse, 0.6,
+                 "convergence: 1/2 for order 1");
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 namespace tactoid::verification {
 
 /// The largest pull of a curve force(separation), followed from `start` outwards in steps of `step` until the force has
-/// fallen clearly or the equilibrium is lost; the peak is that of the parabola through the three highest points. `force`
-/// returns NaN where it finds no equilibrium near the one before. `record(separation, force)` sees all.
+/// fallen clearly or the equilibrium is lost; the peak is that of the parabola through the three highest points.
+/// `force` returns NaN where it finds no equilibrium near the one before. `record(separation, force)` sees all.
 template <class Force, class Record>
 [[nodiscard]] double pull_off_force(const Force& force, double start, double step, const Record& record) {
   std::vector<double> pull;
@@ -36,8 +36,8 @@ template <class Force, class Record>
 }
 
 /// Adhesion of a paraboloid of radius R on an elastic half-space, without a sharp crack: the gap at every radius obeys
-/// the law of the traction and the elastic deflection (Muller, Yushchenko and Derjaguin, J. Colloid Interface Sci. 1980,
-/// 77, 91; Greenwood, Proc. R. Soc. A 1997, 453, 1277, for the Lennard-Jones law):
+/// the law of the traction and the elastic deflection (Muller, Yushchenko and Derjaguin, J. Colloid Interface Sci.
+/// 1980, 77, 91; Greenwood, Proc. R. Soc. A 1997, 453, 1277, for the Lennard-Jones law):
 ///
 ///   H(ρ) = H₀ + ½ρ² + μ^{3/2} (1/π) ∫ T(H(ρ')) dA'/|ρ − ρ'| ,
 ///
@@ -56,9 +56,10 @@ class AdhesiveHalfSpace {
     for (int i = 0; i < rings; ++i)
       for (int j = 0; j < rings; ++j) {
         const double sum = rho_[i] + rho_[j];
-        // K(k) ≈ ln(4/k'), k' = |ρ − ρ'|/(ρ + ρ'), whose mean over the width w is ln(8 (ρ + ρ')/w) + 1 (exactly: at k' → 0).
-        const double K = i == j ? std::log(8.0 * sum / width_) + 1.0
-                                : std::comp_ellint_1(2.0 * std::sqrt(rho_[i] * rho_[j]) / sum);
+        // K(k) ≈ ln(4/k'), k' = |ρ − ρ'|/(ρ + ρ'), whose mean over the width w is ln(8 (ρ + ρ')/w) + 1 (exactly: at k'
+        // → 0).
+        const double K =
+            i == j ? std::log(8.0 * sum / width_) + 1.0 : std::comp_ellint_1(2.0 * std::sqrt(rho_[i] * rho_[j]) / sum);
         kernel_(i, j) = scale * K * rho_[j] / sum;
       }
   }
@@ -84,8 +85,7 @@ class AdhesiveHalfSpace {
         T[i] = traction_(H_[i]);
         slope[i] = (traction_(H_[i] + d) - traction_(H_[i] - d)) / (2.0 * d);
       }
-      const Eigen::VectorXd residual =
-          H_ - Eigen::VectorXd::Constant(n, H0) - 0.5 * rho_.cwiseAbs2() - kernel_ * T;
+      const Eigen::VectorXd residual = H_ - Eigen::VectorXd::Constant(n, H0) - 0.5 * rho_.cwiseAbs2() - kernel_ * T;
       const Eigen::MatrixXd tangent = Eigen::MatrixXd::Identity(n, n) - kernel_ * slope.asDiagonal();
       const Eigen::VectorXd step = tangent.partialPivLu().solve(residual);
       const double largest = step.cwiseAbs().maxCoeff();

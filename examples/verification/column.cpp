@@ -1,6 +1,6 @@
 // The twisting column: C. H. Lee, A. J. Gil, J. Bonet, Comput. Struct. 2013, 118, 13; M. Aguirre, A. J. Gil, J. Bonet,
-// A. Arranz Carreño, J. Comput. Phys. 2014, 259, 672. A column of 6 x 1 x 1 m stands on a fixed base and starts with the
-// angular velocity Ω₀ sin(π X/12 m) about its axis, Ω₀ = 105 rad/s.
+// A. Arranz Carreño, J. Comput. Phys. 2014, 259, 672. A column of 6 x 1 x 1 m stands on a fixed base and starts with
+// the angular velocity Ω₀ sin(π X/12 m) about its axis, Ω₀ = 105 rad/s.
 #include <numbers>
 #include <optional>
 
@@ -22,14 +22,16 @@ constexpr double duration = 0.5, interval = 2.5e-3;  // s
 struct Twist {
   std::vector<double> height, angle;  // of the top, every `interval`; m, rad
   double stabilization = 0.0;         // largest share of the energy
-  double alternation = 0.0;           // largest root mean square displacement that alternates from particle to particle, spacings
-  double largest_defect = 0.0;        // of the energy balance, over the energy at the start
+  double alternation =
+      0.0;  // largest root mean square displacement that alternates from particle to particle, spacings
+  double largest_defect = 0.0;  // of the energy balance, over the energy at the start
 };
 
-/// What alternates along the axis: the fourth difference over 16 of the displacement is a for ±a, and of fourth order in the
-/// spacing for a smooth field.
+/// What alternates along the axis: the fourth difference over 16 of the displacement is a for ±a, and of fourth order
+/// in the spacing for a smooth field.
 double alternation(const Field& u, const std::vector<Index>& grid, int across) {
-  const auto n = static_cast<std::size_t>(across + 1), layers = static_cast<std::size_t>(6 * across + 1), stride = n * n;
+  const auto n = static_cast<std::size_t>(across + 1), layers = static_cast<std::size_t>(6 * across + 1),
+             stride = n * n;
   double sum = 0.0;
   for (std::size_t k = 2; k + 2 < layers; ++k)
     for (std::size_t c = 0; c < stride; ++c) {
@@ -41,7 +43,8 @@ double alternation(const Field& u, const std::vector<Index>& grid, int across) {
 
 Twist twist(Report& report, int across, bool frames) {
   const double spacing = 1.0 / across;
-  PointCloud<3> cloud = box({.size = {1.0, 1.0, 6.0}, .cells = {across, across, 6 * across}, .origin = {-0.5, -0.5, 0.0}});
+  PointCloud<3> cloud =
+      box({.size = {1.0, 1.0, 6.0}, .cells = {across, across, 6 * across}, .origin = {-0.5, -0.5, 0.0}});
   const auto base = select(cloud, [](const Point<3>& X) { return X[2] < 1e-9; });
   const auto top = select(cloud, [](const Point<3>& X) { return X[2] > 6.0 - 1e-9; });
   const auto facets = cloud.facets;
@@ -59,11 +62,13 @@ Twist twist(Report& report, int across, bool frames) {
     const double omega = 105.0 * std::sin(std::numbers::pi * X[2] / 12.0);
     body.velocity[i] = Vector4(-omega * X[1], omega * X[0], 0.0, 0.0);
   }
-  Simulation simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{on<0>(fixed(base))}, CentralDifference{.safety = 0.5}};
+  Simulation simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{on<0>(fixed(base))},
+                        CentralDifference{.safety = 0.5}};
   Twist result;
   const double initial = simulation.ledger().total();
   double angle = 0.0;
-  auto history = report.table(fmt::format("history_{}", across), {"time_s", "height_m", "twist_rad", "kinetic_J", "strain_J", "stabilization_J"});
+  auto history = report.table(fmt::format("history_{}", across),
+                              {"time_s", "height_m", "twist_rad", "kinetic_J", "strain_J", "stabilization_J"});
   std::vector<std::string> columns{"time_s"};
   for (int corner = 0; corner < 4; ++corner)
     for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("{}{}_m", axis, corner));
@@ -117,24 +122,35 @@ void column(Report& report, Level level) {
   for (const int across : resolutions) {
     const Twist& t = runs.emplace_back(twist(report, across, across == resolutions.back()));
     const std::string at = fmt::format(", {} cells across", across);
-    report.at_least("end of the run, s" + at, interval * static_cast<double>(t.height.size() - 1), duration - 1e-9, "it does not break down");
+    report.at_least("end of the run, s" + at, interval * static_cast<double>(t.height.size() - 1), duration - 1e-9,
+                    "it does not break down");
     if (across >= 4)
-      report.at_most("largest share of the stabilisation in the energy" + at, t.stabilization, 0.05, "no zero-energy pattern");
+      report.at_most("largest share of the stabilisation in the energy" + at, t.stabilization, 0.05,
+                     "no zero-energy pattern");
     else
-      report.note("largest share of the stabilisation in the energy" + at, t.stabilization, none, "falls with the spacing");
-    report.at_most("largest displacement that alternates between particles, spacings" + at, t.alternation, 0.1, "no zero-energy pattern");
-    report.at_most("largest change of the total energy" + at, t.largest_defect, 1e-2, "conserved; over the energy at the start");
-    report.note("largest twist of the top, rad" + at, *std::max_element(t.angle.begin(), t.angle.end()), none, "no exact solution");
-    report.note("least height of the top, m" + at, *std::min_element(t.height.begin(), t.height.end()), none, "no exact solution");
+      report.note("largest share of the stabilisation in the energy" + at, t.stabilization, none,
+                  "falls with the spacing");
+    report.at_most("largest displacement that alternates between particles, spacings" + at, t.alternation, 0.1,
+                   "no zero-energy pattern");
+    report.at_most("largest change of the total energy" + at, t.largest_defect, 1e-2,
+                   "conserved; over the energy at the start");
+    report.note("largest twist of the top, rad" + at, *std::max_element(t.angle.begin(), t.angle.end()), none,
+                "no exact solution");
+    report.note("least height of the top, m" + at, *std::min_element(t.height.begin(), t.height.end()), none,
+                "no exact solution");
   }
   for (const double until : {0.1, duration}) {
-    const double angle[2] = {difference(runs[0].angle, runs[1].angle, until), difference(runs[1].angle, runs[2].angle, until)};
-    const double height[2] = {difference(runs[0].height, runs[1].height, until), difference(runs[1].height, runs[2].height, until)};
+    const double angle[2] = {difference(runs[0].angle, runs[1].angle, until),
+                             difference(runs[1].angle, runs[2].angle, until)};
+    const double height[2] = {difference(runs[0].height, runs[1].height, until),
+                              difference(runs[1].height, runs[2].height, until)};
     const std::string span = fmt::format(" up to {} s", until);
     report.note("twist: difference of the two finest" + span + ", rms, rad", angle[1], none, "between resolutions");
     report.note("height: difference of the two finest" + span + ", rms, m", height[1], none, "between resolutions");
-    report.at_most("twist: that over the difference of the two coarsest" + span, angle[1] / angle[0], 0.7, "converging");
-    report.at_most("height: that over the difference of the two coarsest" + span, height[1] / height[0], 0.7, "converging");
+    report.at_most("twist: that over the difference of the two coarsest" + span, angle[1] / angle[0], 0.7,
+                   "converging");
+    report.at_most("height: that over the difference of the two coarsest" + span, height[1] / height[0], 0.7,
+                   "converging");
   }
 }
 

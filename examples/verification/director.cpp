@@ -330,8 +330,7 @@ void study_transport(Report& report) {
                               const double s = strain / K * t / end;
                               return Vector3(s * std::sin(K * X[1]), s * std::sin(K * X[0]), s * std::cos(K * X[0]));
                             }};
-    auto simulation = driven_cube<Convected>(
-        motion, cloud, [](const Vector3&) { return start_director; }, end / 40);
+    auto simulation = driven_cube<Convected>(motion, cloud, [](const Vector3&) { return start_director; }, end / 40);
     simulation.run(end);
     double sum = 0.0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {

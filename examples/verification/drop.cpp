@@ -31,14 +31,14 @@ constexpr double density = 1000.0;
 
 /// A ball of gel without activity, held together by its surface.
 struct Drop {
-  double radius = 5e-6;         ///< R, of the sphere that the surface particles lie on, m
-  double tension = 0.072e-3;    ///< σ₀, N/m
-  double viscosity = 0.003;     ///< μ, Pa s
-  double stiffness = 1000.0;    ///< K over the Laplace pressure 2σ₀/R: changes of volume are a thousandth
-  double pressure = 1.0;        ///< reference pressure over 2σ₀/R
-  double fluid_modulus = 500.0; ///< of NodalCentroids, Pa
+  double radius = 5e-6;          ///< R, of the sphere that the surface particles lie on, m
+  double tension = 0.072e-3;     ///< σ₀, N/m
+  double viscosity = 0.003;      ///< μ, Pa s
+  double stiffness = 1000.0;     ///< K over the Laplace pressure 2σ₀/R: changes of volume are a thousandth
+  double pressure = 1.0;         ///< reference pressure over 2σ₀/R
+  double fluid_modulus = 500.0;  ///< of NodalCentroids, Pa
   int core_cells = 10, shells = 5;
-  double elongation = 0.0;      ///< of the axis z at the start, at constant volume
+  double elongation = 0.0;  ///< of the axis z at the start, at constant volume
 
   [[nodiscard]] double laplace() const { return 2.0 * tension / radius; }
   [[nodiscard]] double capillary_time() const { return std::sqrt(density * radius * radius * radius / tension); }
@@ -96,9 +96,9 @@ template <class S>
 [[nodiscard]] Trace trace(S& simulation, double end, double interval) {
   Trace t;
   simulation.run(end, every(interval, [&](auto& s) {
-    t.time.push_back(s.time());
-    t.elongation.push_back(tactoid::verification::elongation(s));
-  }));
+                   t.time.push_back(s.time());
+                   t.elongation.push_back(tactoid::verification::elongation(s));
+                 }));
   return t;
 }
 
@@ -138,8 +138,10 @@ void laplace(Report& report, const std::string& name, Drop drop) {
   const Rest r = rest<Tension>(drop, 20e-6);
   const double particles = std::pow(drop.core_cells + 1, 3) +
                            drop.shells * (std::pow(drop.core_cells + 1, 3) - std::pow(drop.core_cells - 1, 3));
-  const std::string what = fmt::format("{}, {:.0f} particles, stabilisation {:g} Pa", name, particles, drop.fluid_modulus);
-  report.compare("mean pressure, Pa: " + what, r.pressure, drop.laplace(), 0.01, "2 sigma_0/R (Laplace), R of the surface particles");
+  const std::string what =
+      fmt::format("{}, {:.0f} particles, stabilisation {:g} Pa", name, particles, drop.fluid_modulus);
+  report.compare("mean pressure, Pa: " + what, r.pressure, drop.laplace(), 0.01,
+                 "2 sigma_0/R (Laplace), R of the surface particles");
   report.note("mean pressure, Pa, R of the volume: " + what, r.pressure, 2.0 * drop.tension / r.radius, "2 sigma_0/R");
   report.note("scatter of the pressure over its mean: " + what, r.scatter / r.pressure, 0.0, "uniform");
   report.note("largest speed at the end over sqrt(sigma_0/(rho R)): " + what,
@@ -182,15 +184,18 @@ void oscillate(Report& report, Level level, const std::string& name, Drop drop) 
   const std::complex<double> exact =
       drop_mode_rate(drop.ohnesorge(), {-5.0 * drop.ohnesorge(), std::sqrt(8.0)}) / drop.capillary_time();
   const std::string what = fmt::format("{}, core {}, stabilisation {:g} Pa", name, drop.core_cells, drop.fluid_modulus);
-  report.compare("n = 2 frequency, rad/s: " + what, o.frequency, rayleigh, 0.03, "sqrt(8 sigma_0/(rho R^3)) (Rayleigh 1879)");
-  // The curvature policy is the gradient of no energy: what it gives to the motion is of the size of this small damping.
+  report.compare("n = 2 frequency, rad/s: " + what, o.frequency, rayleigh, 0.03,
+                 "sqrt(8 sigma_0/(rho R^3)) (Rayleigh 1879)");
+  // The curvature policy is the gradient of no energy: what it gives to the motion is of the size of this small
+  // damping.
   if constexpr (std::is_same_v<Tension, SurfaceTension>)
     report.compare("n = 2 damping, 1/s: " + what, o.damping, lamb, 0.03, "5 nu/R^2 (Lamb)");
   else
     report.note("n = 2 damping, 1/s: " + what, o.damping, lamb, "5 nu/R^2 (Lamb); not a gradient of an energy");
   report.note("frequency of the normal mode: " + what, o.frequency, exact.imag(), "Chandrasekhar 1959, Oh = 0.0019");
   report.note("damping of the normal mode: " + what, o.damping, -exact.real(), "Chandrasekhar 1959, Oh = 0.0019");
-  HistoryWriter table = report.table(fmt::format("oscillation_{}_{:g}", name, drop.fluid_modulus), {"time", "elongation", "theory"});
+  HistoryWriter table =
+      report.table(fmt::format("oscillation_{}_{:g}", name, drop.fluid_modulus), {"time", "elongation", "theory"});
   for (std::size_t i = 0; i < t.time.size(); ++i)
     table.write(std::array{t.time[i], t.elongation[i],
                            t.elongation[0] * std::exp(exact.real() * t.time[i]) * std::cos(exact.imag() * t.time[i])});
@@ -208,14 +213,19 @@ void relax(Report& report, Level level, const std::string& name, Drop drop, bool
   // From one viscous time on, when the flow is that of Stokes.
   const std::size_t first = 4, last = t.time.size() - 1;
   const double rate = std::log(t.elongation[first] / t.elongation[last]) / (t.time[last] - t.time[first]);
-  const double exact = -drop_mode_rate(drop.ohnesorge(), -20.0 / 19.0 / drop.ohnesorge()).real() / drop.capillary_time();
+  const double exact =
+      -drop_mode_rate(drop.ohnesorge(), -20.0 / 19.0 / drop.ohnesorge()).real() / drop.capillary_time();
   const std::string what = fmt::format("{}, core {}, stabilisation {:g} Pa", name, drop.core_cells, drop.fluid_modulus);
-  if (required) report.compare("overdamped rate, 1/s: " + what, rate, stokes, 0.03, "(20/19) sigma_0/(mu R)");
-  else report.note("overdamped rate, 1/s: " + what, rate, stokes, "(20/19) sigma_0/(mu R); the stabilisation holds back");
+  if (required)
+    report.compare("overdamped rate, 1/s: " + what, rate, stokes, 0.03, "(20/19) sigma_0/(mu R)");
+  else
+    report.note("overdamped rate, 1/s: " + what, rate, stokes, "(20/19) sigma_0/(mu R); the stabilisation holds back");
   report.note("overdamped rate of the normal mode: " + what, rate, exact, "Chandrasekhar 1959, Oh = 5");
-  HistoryWriter table = report.table(fmt::format("relaxation_{}_{:g}", name, drop.fluid_modulus), {"time", "elongation", "theory"});
+  HistoryWriter table =
+      report.table(fmt::format("relaxation_{}_{:g}", name, drop.fluid_modulus), {"time", "elongation", "theory"});
   for (std::size_t i = 0; i < t.time.size(); ++i)
-    table.write(std::array{t.time[i], t.elongation[i], t.elongation[first] * std::exp(-exact * (t.time[i] - t.time[first]))});
+    table.write(
+        std::array{t.time[i], t.elongation[i], t.elongation[first] * std::exp(-exact * (t.time[i] - t.time[first]))});
 }
 
 // --- forces of the surface -------------------------------------------------------------------------------------------
@@ -224,11 +234,13 @@ void relax(Report& report, Level level, const std::string& name, Drop drop, bool
 template <class Tension>
 [[nodiscard]] double imbalance(int core_cells, int shells) {
   const Drop drop;
-  const PointCloud<3> cloud = ball({.radius = drop.radius, .core_radius = 0.5 * drop.radius, .core_cells = core_cells, .shells = shells});
+  const PointCloud<3> cloud =
+      ball({.radius = drop.radius, .core_radius = 0.5 * drop.radius, .core_cells = core_cells, .shells = shells});
   BodyFields fields = at_rest(cloud);
   for (Vector4& x : fields.position) {
     const Vector4 s = x / drop.radius;
-    x += drop.radius * Vector4(0.15 * std::sin(2.0 * s[1] + 0.3) + 0.1 * s[0] * s[2], 0.2 * s[0] * s[0] - 0.1 * s[2], 0.2 * std::cos(1.5 * s[0] - s[1]), 0.0);
+    x += drop.radius * Vector4(0.15 * std::sin(2.0 * s[1] + 0.3) + 0.1 * s[0] * s[2], 0.2 * s[0] * s[0] - 0.1 * s[2],
+                               0.2 * std::cos(1.5 * s[0] - s[1]), 0.0);
   }
   Tension term{.tension = drop.tension};
   term.initialize(cloud, fields.view());
@@ -251,7 +263,8 @@ void drop(Report& report, Level level) {
                  imbalance<SurfaceTension>(10, 5), 1e-13, "zero: the area does not change with a rigid motion");
   const double coarse = imbalance<CurvatureSurfaceTension>(6, 3), fine = imbalance<CurvatureSurfaceTension>(12, 6);
   report.note("net force and torque of the tension by curvature, core 12", fine, 0.0, "not exactly conservative");
-  report.at_least("order of these in the spacing, core 6 to 12", std::log2(coarse / fine), 1.5, "2 for bilinear facets");
+  report.at_least("order of these in the spacing, core 6 to 12", std::log2(coarse / fine), 1.5,
+                  "2 for bilinear facets");
 
   // As small a stabilisation as the relaxation is safe with: a sixth of the Laplace pressure, and the default, which is
   // tied to the reference shape and 17 times that pressure.

@@ -18,8 +18,8 @@
 
 namespace tactoid::verification {
 
-/// How a displacement field behaves in the mirrors x, y and z: that of the gradient of a potential which is even (+1) or
-/// odd (-1) there. 0: no symmetry in this direction.
+/// How a displacement field behaves in the mirrors x, y and z: that of the gradient of a potential which is even (+1)
+/// or odd (-1) there. 0: no symmetry in this direction.
 using Parity = std::array<int, 3>;
 
 /// u_c(mirrored x) = sign · u_c(x) for the mirror with the normal `axis`.
@@ -29,8 +29,8 @@ using Parity = std::array<int, 3>;
 
 // --- Lamb's ball ------------------------------------------------------------------------------------------------
 
-/// Determinant of the spheroidal modes of degree l of a free ball: H. Lamb, Proc. London Math. Soc. 1882, 13, 189, in the
-/// notation of Eringen and Suhubi, Elastodynamics II, 1975, section 8.13; ξ = ω a/c_l, η = ω a/c_t:
+/// Determinant of the spheroidal modes of degree l of a free ball: H. Lamb, Proc. London Math. Soc. 1882, 13, 189, in
+/// the notation of Eringen and Suhubi, Elastodynamics II, 1975, section 8.13; ξ = ω a/c_l, η = ω a/c_t:
 ///   T11 T43 - T13 T41,   T11 = (l² - l - η²/2) j_l(ξ) + 2ξ j_{l+1}(ξ),    T13 = l(l+1) [(l-1) j_l(η) - η j_{l+1}(η)],
 ///                        T41 = (l-1) j_l(ξ) - ξ j_{l+1}(ξ),               T43 = (l² - 1 - η²/2) j_l(η) + η j_{l+1}(η).
 [[nodiscard]] inline double lamb_determinant(int l, double eta, double poisson) {
@@ -106,9 +106,9 @@ struct RitzBasis {
 
 }  // namespace detail
 
-/// Frequencies (rad/s, ascending, with the zero ones of rigid motions) of the modes of a bar that have the given parity:
-/// Rayleigh and Ritz with polynomials of at most these degrees (W. M. Visscher et al., J. Acoust. Soc. Am. 1991, 90, 2154,
-/// with products of Legendre polynomials). They converge from above, exponentially for a free bar.
+/// Frequencies (rad/s, ascending, with the zero ones of rigid motions) of the modes of a bar that have the given
+/// parity: Rayleigh and Ritz with polynomials of at most these degrees (W. M. Visscher et al., J. Acoust. Soc. Am.
+/// 1991, 90, 2154, with products of Legendre polynomials). They converge from above, exponentially for a free bar.
 [[nodiscard]] inline std::vector<double> ritz_frequencies(const ElasticBar& bar, const Parity& parity,
                                                           const std::array<int, 3>& degrees) {
   std::vector<std::array<detail::RitzBasis, 3>> basis;
@@ -119,12 +119,14 @@ struct RitzBasis {
     };
     basis.push_back({along(0), along(1), along(2)});
     const auto& b = basis.back();
-    start[static_cast<std::size_t>(c) + 1] = start[static_cast<std::size_t>(c)] + b[0].size() * b[1].size() * b[2].size();
+    start[static_cast<std::size_t>(c) + 1] =
+        start[static_cast<std::size_t>(c)] + b[0].size() * b[1].size() * b[2].size();
   }
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(start[3], start[3]), M = K;
-  // ∫ ∂_p φ_A ∂_q φ_B: a product of integrals along the axes. Functions of different components have different parities,
-  // so mixed integrals are taken with bases that hold all degrees and then picked.
-  std::array<detail::RitzBasis, 3> all{detail::RitzBasis(degrees[0], 0, bar.clamped), detail::RitzBasis(degrees[1], 0, false),
+  // ∫ ∂_p φ_A ∂_q φ_B: a product of integrals along the axes. Functions of different components have different
+  // parities, so mixed integrals are taken with bases that hold all degrees and then picked.
+  std::array<detail::RitzBasis, 3> all{detail::RitzBasis(degrees[0], 0, bar.clamped),
+                                       detail::RitzBasis(degrees[1], 0, false),
                                        detail::RitzBasis(degrees[2], 0, false)};
   const auto degree_of = [&](int c, int a, Eigen::Index i) -> Eigen::Index {
     const int sign = mirror_sign(parity, a, c);
@@ -154,7 +156,8 @@ struct RitzBasis {
   for (std::size_t A = 0; A < functions.size(); ++A)
     for (std::size_t B = A; B < functions.size(); ++B) {
       const int p = functions[A].component, q = functions[B].component;
-      double k = bar.lambda * product(functions[A], functions[B], p, q) + bar.mu * product(functions[A], functions[B], q, p);
+      double k =
+          bar.lambda * product(functions[A], functions[B], p, q) + bar.mu * product(functions[A], functions[B], q, p);
       if (p == q)
         for (int a = 0; a < 3; ++a) k += bar.mu * product(functions[A], functions[B], a, a);
       const auto i = static_cast<Eigen::Index>(A), j = static_cast<Eigen::Index>(B);
@@ -175,9 +178,9 @@ struct Mode {
 };
 
 /// The lowest modes of a body whose cloud is its own mirror image in the planes through the origin, out of the class of
-/// the given parity; `held(X)`: particles that do not move. `stiffness` is assemble_stiffness(body). The eigenvalues are
-/// those of K u = ω² M u, by inverse subspace iteration with a shift of `scale`² (rad²/s²), so that rigid motions (ω = 0)
-/// come with the others.
+/// the given parity; `held(X)`: particles that do not move. `stiffness` is assemble_stiffness(body). The eigenvalues
+/// are those of K u = ω² M u, by inverse subspace iteration with a shift of `scale`² (rad²/s²), so that rigid motions
+/// (ω = 0) come with the others.
 template <class Body, class Held>
 [[nodiscard]] std::vector<Mode> lowest_modes(const Body& body, const StiffnessMatrix& stiffness, const Parity& parity,
                                              Eigen::Index count, double scale, const Held& held) {
@@ -206,9 +209,12 @@ template <class Body, class Held>
           }
         if (sign == 0) continue;
         const auto unknown = 3 * static_cast<std::size_t>(tree.nearest(image)) + static_cast<std::size_t>(c);
-        const auto found = std::find_if(images.begin(), images.end(), [&](const auto& old) { return old.first == unknown; });
-        if (found == images.end()) images.emplace_back(unknown, sign);
-        else moves = found->second == sign;  // a particle on a mirror, and a component that is odd there
+        const auto found =
+            std::find_if(images.begin(), images.end(), [&](const auto& old) { return old.first == unknown; });
+        if (found == images.end())
+          images.emplace_back(unknown, sign);
+        else
+          moves = found->second == sign;  // a particle on a mirror, and a component that is odd there
       }
       if (!moves) continue;
       for (const auto& [unknown, sign] : images) {
@@ -246,7 +252,8 @@ template <class Body, class Held>
     V = Eigen::HouseholderQR<Eigen::MatrixXd>(V).householderQ() * Eigen::MatrixXd::Identity(unknowns, block);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(V.transpose() * K.selfadjointView<Eigen::Lower>() * V);
     V = (V * ritz.eigenvectors()).eval();
-    const double change = (ritz.eigenvalues() - values).head(count).cwiseQuotient(ritz.eigenvalues().head(count)).cwiseAbs().maxCoeff();
+    const double change =
+        (ritz.eigenvalues() - values).head(count).cwiseQuotient(ritz.eigenvalues().head(count)).cwiseAbs().maxCoeff();
     values = ritz.eigenvalues();
     if (change < 1e-11) break;
   }

@@ -181,14 +181,14 @@ void study_terms(Report& report, Level level) {
   };
   NematicGel<> bare = gel;
   bare.viscosity = 0.0, bare.director_elasticity = 0.0, bare.activity = 0.0;
-  const auto plus = [&](double NematicGel<>::*parameter) {
+  const auto plus = [&](double NematicGel<>::* parameter) {
     NematicGel<> law = bare;
     law.*parameter = gel.*parameter;
     return law;
   };
   NematicGel<> stiff = bare;
   stiff.bulk_modulus *= 2.0;
-  const auto integral = [](double Densities::*density) {
+  const auto integral = [](double Densities::* density) {
     return mean([&](const Vector3& X) { return densities(given(X).state).*density; });
   };
   const std::array terms{
@@ -269,7 +269,7 @@ struct Run {
 
   [[nodiscard]] double dissipated() const { return history.back().dissipated; }
   /// Largest value of one of the defects over the run, over what was dissipated in all.
-  [[nodiscard]] double largest(double Instant::*defect) const {
+  [[nodiscard]] double largest(double Instant::* defect) const {
     double value = 0.0;
     for (const Instant& now : history) value = std::max(value, std::abs(now.*defect));
     return value / dissipated();

@@ -31,9 +31,12 @@ std::pair<double, Point<D>> exact(const Point<D>& X) {
 
 template <int D>
 PointCloud<D> jittered_cloud(int n) {
-  if constexpr (D == 1) return jitter(bar({.length = 1.0, .cells = n}), 0.2);
-  else if constexpr (D == 2) return jitter(rectangle({.size = {1.0, 1.0}, .cells = {n, n}}), 0.2);
-  else return jitter(box({.size = {1.0, 1.0, 1.0}, .cells = {n, n, n}}), 0.2);
+  if constexpr (D == 1)
+    return jitter(bar({.length = 1.0, .cells = n}), 0.2);
+  else if constexpr (D == 2)
+    return jitter(rectangle({.size = {1.0, 1.0}, .cells = {n, n}}), 0.2);
+  else
+    return jitter(box({.size = {1.0, 1.0, 1.0}, .cells = {n, n, n}}), 0.2);
 }
 
 struct Errors {
@@ -75,8 +78,8 @@ Errors interpolation_errors(const K& kernel, int cells) {
 template <class K>
 void converge(Report& report, const char* name, const std::vector<int>& cells) {
   const K kernel{};
-  HistoryWriter table = report.table(fmt::format("{}_{}D_order_{}", name, K::dimension, K::order),
-                                     {"spacing [m]", "L2", "H1"});
+  HistoryWriter table =
+      report.table(fmt::format("{}_{}D_order_{}", name, K::dimension, K::order), {"spacing [m]", "L2", "H1"});
   std::vector<double> h, value, slope;
   for (const int n : cells) {
     const Errors errors = interpolation_errors(kernel, n);
@@ -85,7 +88,8 @@ void converge(Report& report, const char* name, const std::vector<int>& cells) {
     slope.push_back(errors.slope);
     table.write(std::array{h.back(), errors.value, errors.slope});
   }
-  const std::string title = fmt::format("{}, {}D, {} basis", name, K::dimension, K::order == 1 ? "linear" : "quadratic");
+  const std::string title =
+      fmt::format("{}, {}D, {} basis", name, K::dimension, K::order == 1 ? "linear" : "quadratic");
   const std::string source = fmt::format("order {} + 1 and {} of a basis complete to degree {}; {} to {} cells",
                                          K::order, K::order, K::order, cells.front(), cells.back());
   const bool linear = K::order == 1;

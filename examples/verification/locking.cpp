@@ -118,17 +118,17 @@ Bent bend(const Quadrature& quadrature, int across, double force) {
 }  // namespace
 
 void locking(Report& report, Level level) {
-  // The elastica gives w/L = ½ for F L²/(E I) = 2.04, E = 9 K G/(3 K + G) (Bisshopp and Drucker, Q. Appl. Math. 1945, 3,
-  // 272). The tip of the three-dimensional bar: an independent finite-element solution of the same equations (27-node
-  // hexahedra, volumetric term at 2³ points, symmetric half) gives 4.9660, 4.9681 and 4.9739 m on 20 × 2 × 2,
+  // The elastica gives w/L = ½ for F L²/(E I) = 2.04, E = 9 K G/(3 K + G) (Bisshopp and Drucker, Q. Appl. Math. 1945,
+  // 3, 272). The tip of the three-dimensional bar: an independent finite-element solution of the same equations
+  // (27-node hexahedra, volumetric term at 2³ points, symmetric half) gives 4.9660, 4.9681 and 4.9739 m on 20 × 2 × 2,
   // 20 × 4 × 3 and 40 × 4 × 3 elements.
   constexpr double force = 23.3666, reference = 4.974;  // N, m
   constexpr const char* source = "27-node mixed finite elements, 40 x 4 x 3, tip load 2.04 E I/L^2";
   // The core of the paper's cell (nucleus of 3.8 to 6.2 µm, 10 cells) resolves its smallest parts by about this many.
   constexpr int paper = 4;
   const std::vector<int> resolutions = level == Level::full ? std::vector{2, 3, 4, 6} : std::vector{2, 3, 4};
-  HistoryWriter table = report.table("deflection", {"cells across", "deflection [m]", "shortening [m]",
-                                                    "pressure oscillation", "reference [m]"});
+  HistoryWriter table = report.table(
+      "deflection", {"cells across", "deflection [m]", "shortening [m]", "pressure oscillation", "reference [m]"});
   std::vector<double> deflections;
   double at_paper = 0.0;
   for (const int across : resolutions) {

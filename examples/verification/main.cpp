@@ -1,4 +1,5 @@
-// Every term of the equations against exact solutions, orders of convergence and theory. See README.md beside this file.
+// Every term of the equations against exact solutions, orders of convergence and theory. See README.md beside this
+// file.
 //
 //   verification --out out/verification            all studies, under 40 minutes on two cores
 //   verification --fast --study kernel             the part of one study that the tests run
@@ -24,13 +25,16 @@ std::string markdown(const std::vector<Report>& reports) {
       using Kind = Report::Line::Kind;
       const bool bound = line.kind == Kind::at_most || line.kind == Kind::at_least;
       const bool none = bound || std::isnan(line.reference);
-      const std::string expected =
-          bound ? fmt::format("{} {:.4g}", line.kind == Kind::at_most ? "≤" : "≥", line.allowed)
-                : none ? "" : fmt::format("{:.5g}", line.reference);
+      const std::string expected = bound
+                                       ? fmt::format("{} {:.4g}", line.kind == Kind::at_most ? "≤" : "≥", line.allowed)
+                                   : none ? ""
+                                          : fmt::format("{:.5g}", line.reference);
       const std::string error = none ? "" : fmt::format("{:.2g}", line.error);
-      text += fmt::format("| {} | {}; {} | {:.5g} | {} | {} | {} |\n", line.study, line.quantity, line.source, line.value,
-                          expected, error,
-                          line.kind == Kind::note ? "reported" : line.passed ? "pass" : "**fail**");
+      text += fmt::format("| {} | {}; {} | {:.5g} | {} | {} | {} |\n", line.study, line.quantity, line.source,
+                          line.value, expected, error,
+                          line.kind == Kind::note ? "reported"
+                          : line.passed           ? "pass"
+                                                  : "**fail**");
     }
   return text;
 }

@@ -66,9 +66,9 @@ struct ManufacturedMotion {
 
 /// Relative errors of a solution against the exact one, each over the norm of what is compared.
 struct SolutionErrors {
-  double displacement = 0.0;  ///< L2: of the values at the particles (or of the field at the points of integration)
-  double gradient = 0.0;      ///< L2 of F − F_exact at the points of integration, over that of F_exact − 1
-  double field = 0.0;         ///< L2 of the multilinear interpolant of the particles' values, integrated by 3ᴰ points
+  double displacement = 0.0;    ///< L2: of the values at the particles (or of the field at the points of integration)
+  double gradient = 0.0;        ///< L2 of F − F_exact at the points of integration, over that of F_exact − 1
+  double field = 0.0;           ///< L2 of the multilinear interpolant of the particles' values, integrated by 3ᴰ points
   double field_gradient = 0.0;  ///< of its gradient: the H1 seminorm
   double pressure = 0.0;        ///< L2 of the pressure at the points of integration
 };

@@ -62,7 +62,8 @@ namespace tactoid::verification {
 /// The cloud with those of its facets only that lie on the sphere of the given radius: where an octant can touch.
 [[nodiscard]] inline PointCloud<3> on_sphere(PointCloud<3> cloud, double radius) {
   std::erase_if(cloud.facets, [&](const auto& facet) {
-    return !std::all_of(facet.begin(), facet.end(), [&](Index i) { return std::abs(cloud.positions[i].norm() - radius) < 1e-9 * radius; });
+    return !std::all_of(facet.begin(), facet.end(),
+                        [&](Index i) { return std::abs(cloud.positions[i].norm() - radius) < 1e-9 * radius; });
   });
   return cloud;
 }
@@ -82,8 +83,7 @@ class PressedBody {
     quadrature_ = FacetQuadrature<3>(surface_, fields_.reference, 3);
     contact_.initialize(part_, fields_.view());
     for (std::size_t i = 0; i < body.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        unknown_.push_back(fields_.reference[i][k] == 0.0 ? -1 : unknowns_++);
+      for (int k = 0; k < 3; ++k) unknown_.push_back(fields_.reference[i][k] == 0.0 ? -1 : unknowns_++);
     column_.assign(body.size(), -1);
     for (const Index i : surface_.nodes)
       if ((part_.positions[i] - Point<3>(0.0, 0.0, radius)).norm() < reach && unknown_[3 * i + 2] >= 0) {
@@ -110,8 +110,7 @@ class PressedBody {
     const auto m = static_cast<Eigen::Index>(touching_.size());
     response_.resize(unknowns_, m);
     compliance_.resize(m, m);
-    for (Eigen::Index j = 0; j < m; ++j)
-      response_.col(j) = factor_.solve(Eigen::VectorXd::Unit(unknowns_, z_of(j)));
+    for (Eigen::Index j = 0; j < m; ++j) response_.col(j) = factor_.solve(Eigen::VectorXd::Unit(unknowns_, z_of(j)));
     for (Eigen::Index i = 0; i < m; ++i) compliance_.row(i) = response_.row(z_of(i));
   }
 
@@ -131,7 +130,8 @@ class PressedBody {
       const auto m = static_cast<Eigen::Index>(touching_.size());
       Eigen::VectorXd at_surface(m);
       for (Eigen::Index i = 0; i < m; ++i) at_surface[i] = w[z_of(i)];
-      const Eigen::VectorXd change = (Eigen::MatrixXd::Identity(m, m) + compliance_ * k).partialPivLu().solve(at_surface);
+      const Eigen::VectorXd change =
+          (Eigen::MatrixXd::Identity(m, m) + compliance_ * k).partialPivLu().solve(at_surface);
       const double part = std::min(1.0, largest_change / change.cwiseAbs().maxCoeff());
       const Eigen::VectorXd du = part * (w - response_ * (k * change));
       for (std::size_t i = 0; i < body_.size(); ++i)
@@ -150,7 +150,9 @@ class PressedBody {
   [[nodiscard]] Eigen::Index unknowns() const { return unknowns_; }
 
  private:
-  [[nodiscard]] Eigen::Index z_of(Eigen::Index j) const { return unknown_[3 * touching_[static_cast<std::size_t>(j)] + 2]; }
+  [[nodiscard]] Eigen::Index z_of(Eigen::Index j) const {
+    return unknown_[3 * touching_[static_cast<std::size_t>(j)] + 2];
+  }
 
   Eigen::VectorXd forces(double& scale) {
     fields_.refresh(body_, 0.0);

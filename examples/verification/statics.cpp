@@ -43,8 +43,8 @@ struct Compressible {
   }
 };
 
-/// Shears one after the other, each of which keeps the volume, after a dilation of ±0.7 %: J = 1 + 0.007 cos(π X₁). With
-/// K/G = 148 its pressure is of the size of the shear modulus, as in a nearly incompressible solid under load.
+/// Shears one after the other, each of which keeps the volume, after a dilation of ±0.7 %: J = 1 + 0.007 cos(π X₁).
+/// With K/G = 148 its pressure is of the size of the shear modulus, as in a nearly incompressible solid under load.
 template <int D>
 struct NearlyIsochoric {
   template <class T>
@@ -66,8 +66,10 @@ struct NearlyIsochoric {
 template <int D>
 PointCloud<D> unit_cloud(int cells, double jittered) {
   PointCloud<D> cloud;
-  if constexpr (D == 2) cloud = rectangle({.size = {1.0, 1.0}, .cells = {cells, cells}});
-  else cloud = box({.size = {1.0, 1.0, 1.0}, .cells = {cells, cells, cells}});
+  if constexpr (D == 2)
+    cloud = rectangle({.size = {1.0, 1.0}, .cells = {cells, cells}});
+  else
+    cloud = box({.size = {1.0, 1.0, 1.0}, .cells = {cells, cells, cells}});
   return jittered > 0.0 ? jitter(cloud, jittered) : cloud;
 }
 
@@ -84,9 +86,8 @@ Solution solve(const ManufacturedMotion<Map>& motion, const Law& law, const Quad
   const std::vector<bool> outside = on_boundary(body.cloud());
   for (Index i = 0; i < body.size(); ++i)
     if (outside[i]) boundary.particles.push_back(i);
-  StaticProblem problem(body, {boundary}, BodyForce{.acceleration = [&](const Vector3& X, double) {
-                          return motion.body_force(law, X);
-                        }});
+  StaticProblem problem(body, {boundary},
+                        BodyForce{.acceleration = [&](const Vector3& X, double) { return motion.body_force(law, X); }});
   // Factorisation fills in too much in three dimensions.
   const LinearSolver solver = D == 3 ? LinearSolver::conjugate_gradients : LinearSolver::direct;
   Solution solution;
@@ -104,8 +105,8 @@ double newton_order(const std::vector<double>& residuals) {
   return std::log(r3 / r2) / std::log(r2 / r1);
 }
 
-/// Which rate is required. On jittered clouds the error of the randomness, of order h and small only on fine clouds, sets
-/// in late: there the rate of the two finest is asked.
+/// Which rate is required. On jittered clouds the error of the randomness, of order h and small only on fine clouds,
+/// sets in late: there the rate of the two finest is asked.
 enum class Required { fitted, finest, none };
 
 template <int D, class Map, class Law, class Quadrature>
@@ -133,8 +134,10 @@ void converge(Report& report, const std::string& name, const ManufacturedMotion<
   const auto rate = [&](const char* what, const std::vector<double>& errors, double least) {
     const ConvergenceRates rates = convergence_rates(h, errors);
     const double value = required == Required::fitted ? rates.fitted : rates.last();
-    if (required != Required::none && least > 0.0) report.at_least(title + ": " + what, value, least, source);
-    else report.note(title + ": " + what, value, std::nan(""), source);
+    if (required != Required::none && least > 0.0)
+      report.at_least(title + ": " + what, value, least, source);
+    else
+      report.note(title + ": " + what, value, std::nan(""), source);
   };
   rate("rate of u, L2", u, 1.9);
   rate("rate of grad u, L2 (H1)", F, 0.95);
@@ -179,7 +182,8 @@ void statics(Report& report, Level level) {
   converge<2>(report, "Mooney_2D_regular", shear2, nucleus, nodal, plane, 0.0, Required::fitted);
   converge<2>(report, "Mooney_2D_jittered", shear2, nucleus, nodal, jittered_plane, 0.2, on_jittered);
   converge<3>(report, "neo-Hooke_3D_regular", stretch3, neo_hookean, nodal, space, 0.0, Required::fitted);
-  converge<3>(report, "Mooney_3D_regular", shear3, nucleus, nodal, space, 0.0, full ? Required::finest : Required::none);
+  converge<3>(report, "Mooney_3D_regular", shear3, nucleus, nodal, space, 0.0,
+              full ? Required::finest : Required::none);
   // In three dimensions the clouds that can be solved are too coarse for the order to show: reported.
   if (full) {
     converge<3>(report, "neo-Hooke_3D_jittered", stretch3, neo_hookean, nodal, space, 0.2, Required::none);

@@ -22,7 +22,8 @@ void Report::add(Line line) {
                  line.kind == Line::Kind::at_most ? "at most " : "at least", line.allowed, verdict);
       break;
     case Line::Kind::note:
-      if (std::isnan(line.reference)) fmt::print("  {:<58} {:>12.6g}  {}\n", line.quantity, line.value, verdict);
+      if (std::isnan(line.reference))
+        fmt::print("  {:<58} {:>12.6g}  {}\n", line.quantity, line.value, verdict);
       else
         fmt::print("  {:<58} {:>12.6g}  expected {:>12.6g}  error {:>9.2e}  {}\n", line.quantity, line.value,
                    line.reference, line.error, verdict);
@@ -34,22 +35,39 @@ void Report::add(Line line) {
 
 void Report::compare(std::string quantity, double value, double reference, double allowed, std::string source) {
   const double error = std::abs(value - reference) / std::abs(reference);
-  add({.quantity = std::move(quantity), .source = std::move(source), .value = value, .reference = reference,
-       .error = error, .allowed = allowed, .kind = Line::Kind::compare, .passed = error <= allowed});
+  add({.quantity = std::move(quantity),
+       .source = std::move(source),
+       .value = value,
+       .reference = reference,
+       .error = error,
+       .allowed = allowed,
+       .kind = Line::Kind::compare,
+       .passed = error <= allowed});
 }
 
 void Report::at_most(std::string quantity, double value, double limit, std::string source) {
-  add({.quantity = std::move(quantity), .source = std::move(source), .value = value, .allowed = limit,
-       .kind = Line::Kind::at_most, .passed = value <= limit});
+  add({.quantity = std::move(quantity),
+       .source = std::move(source),
+       .value = value,
+       .allowed = limit,
+       .kind = Line::Kind::at_most,
+       .passed = value <= limit});
 }
 
 void Report::at_least(std::string quantity, double value, double limit, std::string source) {
-  add({.quantity = std::move(quantity), .source = std::move(source), .value = value, .allowed = limit,
-       .kind = Line::Kind::at_least, .passed = value >= limit});
+  add({.quantity = std::move(quantity),
+       .source = std::move(source),
+       .value = value,
+       .allowed = limit,
+       .kind = Line::Kind::at_least,
+       .passed = value >= limit});
 }
 
 void Report::note(std::string quantity, double value, double reference, std::string source) {
-  add({.quantity = std::move(quantity), .source = std::move(source), .value = value, .reference = reference,
+  add({.quantity = std::move(quantity),
+       .source = std::move(source),
+       .value = value,
+       .reference = reference,
        .error = std::abs(value - reference) / std::abs(reference)});
 }
 

@@ -94,7 +94,7 @@ template <class Invariant>
   const double edge = 40e-6;
   const PointCloud<3> cloud = jitter(box({.size = {edge, edge, edge}, .cells = {2, 2, 2}}), 0.2);
   const auto is_top = [&](const Point<3>& X) { return X[1] > edge * (1.0 - 1e-9); };
-  const auto top = select(cloud, is_top), rest = select(cloud, [&](const Point<3>&X) { return !is_top(X); });
+  const auto top = select(cloud, is_top), rest = select(cloud, [&](const Point<3>& X) { return !is_top(X); });
   const Solid<Invariant> law{.a1 = a1, .a2 = a2, .a3 = a3};
   Body cube{"cube", cloud, Rkpm<3>{}, NodalCentroids{}, Materials{Region{"body", law}}};
   Simulation simulation{Bodies{std::move(cube)}, Contacts{}, Boundaries{on<0>(affine(top, F)), on<0>(affine(rest, F))},
