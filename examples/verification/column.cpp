@@ -116,7 +116,7 @@ double difference(const std::vector<double>& a, const std::vector<double>& b, do
 }  // namespace
 
 void column(Report& report, Level level) {
-  const std::vector<int> resolutions = level == Level::full ? std::vector{3, 6, 12} : std::vector{2, 4, 8};
+  const std::vector<int> resolutions = level == Level::full ? std::vector{3, 6, 12} : std::vector{3, 5, 9};
   std::vector<Twist> runs;
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (const int across : resolutions) {
