@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/SparseCholesky>
@@ -66,11 +67,15 @@ struct ConstrainedSolution {
   const auto project = [&](Eigen::VectorXd& r) { r -= N.transpose() * lambda(N * inverse.cwiseProduct(r)); };
 
   solution.x = inverse.cwiseProduct(N.transpose() * lambda(g));
-  Eigen::VectorXd r = f - multiply(solution.x);
+  const Eigen::VectorXd imposed = multiply(solution.x);
+  Eigen::VectorXd r = f - imposed;
   project(r);
   Eigen::VectorXd z = inverse.cwiseProduct(r), direction = z;
   double rho = r.dot(z);
-  const double start = rho, goal = tolerance * tolerance * start;
+  // Round-off of the forces (those of the conditions among them) that the residual is left over from: no iteration
+  // gets below it.
+  const double floor = 1e-30 * (f.cwiseAbs2().dot(inverse) + imposed.cwiseAbs2().dot(inverse));
+  const double start = rho, goal = std::max(tolerance * tolerance * start, floor);
   while (rho > goal && solution.iterations < max_iterations) {
     const Eigen::VectorXd image = multiply(direction);
     const double curvature = direction.dot(image);

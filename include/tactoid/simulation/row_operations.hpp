@@ -138,7 +138,7 @@ StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, doubl
     visit(row[k], even, held[k]);
     visit(row[k + 1], odd, held[k + 1]);
   }
-  const auto damped = [tau](const Values<N>& a) -> Vector4 {
+  const auto damped = [&](const Values<N>& a) -> Vector4 {
     if constexpr (N == 8) return a.template head<4>() + tau * a.template tail<4>();
     else return a;
   };
