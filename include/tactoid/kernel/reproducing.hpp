@@ -71,6 +71,15 @@ class Reproducing {
     }
   }
 
+  /// φ_I(X) alone; zero where the moment matrix is singular.
+  void values(std::vector<double>& out) const {
+    out.assign(neighbors_.size(), 0.0);
+    if (!std::isfinite(condition_)) return;
+    const Vector c = solve(Vector::Unit(0));
+    for (std::size_t i = 0; i < neighbors_.size(); ++i)
+      out[i] = weight(neighbors_[i]) * monomials<D, Order>(neighbors_[i].offset / scale_).dot(c);
+  }
+
   void direct_gradient(std::vector<Point<D>>& out) const {
     out.assign(neighbors_.size(), Point<D>::Zero());
     if (!std::isfinite(condition_)) return;

@@ -7,6 +7,7 @@
 #include <tactoid/core/errors.hpp>
 #include <tactoid/geometry/measures.hpp>
 #include <tactoid/kernel/kernel.hpp>
+#include <tactoid/kernel/reproducing.hpp>
 #include <tactoid/kernel/support.hpp>
 #include <tactoid/neighbors/neighbor_table.hpp>
 #include <tactoid/quadrature/coloring.hpp>
@@ -28,6 +29,8 @@ namespace tactoid {
 ///     ½ c V_q (D / Σ_J w_J |ΔX_J|²) Σ_J w_J |Δu_J − (F_q − 1) ΔX_J|²,   Δ_J from the particle (not the centroid),
 ///   varied exactly. It vanishes for affine fields and leaves six zero modes in 3D (three in 2D).
 ///   c = `solid_ratio` × the shear modulus of the law, or `fluid_modulus` where the law has none.
+/// - The mass of a point goes to its neighbours by linear shape functions φ_I(X_q): mass and centre of mass of the
+///   body are exact. They are linear for a quadratic basis too, whose shares can be negative at corners.
 struct NodalCentroids {
   double solid_ratio = 0.1;             ///< stabilisation modulus over shear modulus, in solids; >= 0
   double fluid_modulus = 500.0;         ///< stabilisation modulus in laws without a shear modulus, Pa; >= 0
@@ -68,6 +71,7 @@ struct NodalCentroids {
     const NeighborTable neighbors = neighbor_table(cloud, centroids, supports);
     lay_out_rows(table, neighbors);
     weights.assign(table.pairs(), 0.0);
+    table.mass_shares.assign(table.pairs(), 0.0);
     for (const NodalCell<D>& cell : cells) {
       table.volume.push_back(cell.volume);
       table.region.push_back(cell.region);
@@ -77,13 +81,16 @@ struct NodalCentroids {
     parallel_for(cells.size(), [&](std::size_t q) {
       std::vector<KernelNeighbor<D>> near;
       std::vector<Point<D>> gradient;
+      std::vector<double> shares;
       const auto row = neighbors.row(q);
       for (Index i : row) near.push_back({cloud.difference(centroids[q], cloud.positions[i]), supports[i], 1.0});
       const double condition = kernel.direct_gradient(near, gradient);
       check_condition(q, table.position[q], row.size(), condition, condition_limit);
+      detail::Reproducing<D, 1, typename K::Window, false>(near).values(shares);
       for (std::size_t k = 0; k < row.size(); ++k) {
         const std::size_t e = table.offsets[q] + k;
         for (int d = 0; d < D; ++d) table.entries[e].gradient[d] = gradient[k][d];
+        table.mass_shares[e] = shares[k];
         weights[e] = K::Window::value(near[k].offset.norm() / near[k].support);
       }
     });

@@ -51,6 +51,8 @@ struct PointTable {
 
   std::vector<double> point_values;  ///< φ_I(X_q) beside `entries`; empty in a value-based table
   ValueRows particle_values;         ///< φ_J(X_I); empty in a value-based table
+  std::vector<double> mass_shares;   ///< of a value-based table, beside `entries`: I's share of the mass at q; Σ_I = 1. A body
+                                     ///< releases it when its masses are lumped. Empty: the owner takes all.
 
   Field particle_position;                  ///< X_I, m
   std::vector<double> stabilization_scale;  ///< V_q · D / Σ_J w_J |X_J − X_I|², 1/m² · m³; empty: none
@@ -67,7 +69,7 @@ struct PointTable {
   }
   /// Bytes that the table holds.
   [[nodiscard]] std::size_t memory() const {
-    return entries.capacity() * sizeof(TableEntry) + point_values.capacity() * sizeof(double) +
+    return entries.capacity() * sizeof(TableEntry) + (point_values.capacity() + mass_shares.capacity()) * sizeof(double) +
            points() * (sizeof(Vector3) + 2 * sizeof(double) + 2 * sizeof(Index) + sizeof(std::size_t)) +
            particle_position.capacity() * sizeof(Vector4) + particle_values.values.capacity() * 12;
   }

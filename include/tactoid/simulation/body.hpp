@@ -150,14 +150,15 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// accept_histories(): a step that breaks down has not touched them.
   BodyTotals add_internal_forces(double time_step, bool advance) {
     if constexpr (has_director) std::fill(director_flux.begin(), director_flux.end(), Vector4::Zero());
-    pack_motion();
+    bool rates = false;
+    for_each_region([&](const auto& region, Index) { rates = rates || needs_rate(region); });
+    if (rates) pack_motion();
     for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
       chunk_totals_[c] = {};
       chunk_stretch_[c] = 0.0;
       chunk_failure_[c] = no_failure;
       visit(chunk.region, [&](auto& region) {
-        using Law = typename std::decay_t<decltype(region)>::Law;
-        if (uses_rate<Law> || has_director || region.stabilization.modulus * region.stabilization.damping_time > 0.0)
+        if (needs_rate(region))
           pass<true>(region, chunk, c, time_step, advance);
         else
           pass<false>(region, chunk, c, time_step, advance);
@@ -283,20 +284,19 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   void assemble_masses() {
     masses_.assign(table_.particles, 0.0);
     volumes_.assign(table_.particles, 0.0);
+    const auto share = [&](std::vector<double>& sums, const std::vector<double>& shares, std::size_t q, double amount) {
+      if (shares.empty()) sums[table_.owner[q]] += amount;
+      else
+        for (std::size_t e = table_.offsets[q]; e < table_.offsets[q + 1]; ++e)
+          sums[table_.entries[e].particle] += amount * shares[e];
+    };
     for_each_region([&](auto& region, Index) {
       for (std::size_t q = region.begin; q < region.end; ++q) {
-        const double mass = table_.volume[q] * region.law(q).density;
-        if (table_.value_based()) {
-          masses_[table_.owner[q]] += mass;
-          volumes_[table_.owner[q]] += table_.volume[q];
-        } else {
-          for (std::size_t e = table_.offsets[q]; e < table_.offsets[q + 1]; ++e) {
-            masses_[table_.entries[e].particle] += mass * table_.point_values[e];
-            volumes_[table_.entries[e].particle] += table_.volume[q] * table_.point_values[e];
-          }
-        }
+        share(masses_, table_.value_based() ? table_.mass_shares : table_.point_values, q, table_.volume[q] * region.law(q).density);
+        share(volumes_, table_.point_values, q, table_.volume[q]);
       }
     });
+    table_.mass_shares = {};
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (!(masses_[i] > 0.0))
         throw GeometryError(fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.",
@@ -318,6 +318,11 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       });
     });
     return scale;
+  }
+
+  template <class Region>
+  [[nodiscard]] static bool needs_rate(const Region& region) {
+    return uses_rate<typename Region::Law> || has_director || region.stabilization.modulus * region.stabilization.damping_time > 0.0;
   }
 
   /// What a particle's motion is for the force loop: u alone, or u and v side by side.
