@@ -55,7 +55,7 @@ TEST_CASE("a ball bounces off a rigid plate: the plate feels the change of momen
   Simulation simulation{Bodies{elastic_ball("ball", 2.15e-6, -0.1)}, Contacts{},
                         Boundaries{on<0>(RigidPlate{.point = {0.0, 0.0, 0.0}, .normal = {0.0, 0.0, 1.0},
                                                     .law = LigandReceptorLaw{.cutoff = 20.0}})},
-                        CentralDifference{.safety = 0.5}};
+                        CentralDifference{.safety = 0.3}};
   const double start = motion<0>(simulation).momentum[2];
   double impulse = 0.0, last_force = simulation.boundary<0>().force()[2];
   simulation.run(4e-6, every_steps(1, [&](auto& s) {

@@ -193,7 +193,8 @@ TEST_CASE("The stabilisation: none for affine fields, and none in the table of t
   }
   CHECK(NodalCentroids{.solid_ratio = 0.2}.stabilization(100.0).modulus == 20.0);
   CHECK(NodalCentroids{.fluid_modulus = 7.0}.stabilization(0.0).modulus == 7.0);
-  CHECK(NodalCentroids{.fluid_damping_time = 3e-8}.stabilization(0.0).damping_time == 3e-8);
+  CHECK(NodalCentroids{.fluid_modulus = 4.0, .fluid_viscosity = 2e-5}.stabilization(0.0).damping_time == 5e-6);
+  CHECK(NodalCentroids{.fluid_modulus = 0.0}.stabilization(0.0).damping_time == 0.0);
   CHECK(GaussCells<2>{}.stabilization(100.0).modulus == 0.0);
   CHECK(GaussCells<2>{}.build(cloud, Rkpm<2>{}).stabilization_scale.empty());
 }

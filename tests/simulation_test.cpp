@@ -36,7 +36,7 @@ struct Unchecked {
 };
 
 NodalCentroids undamped() {
-  return {.solid_damping_time = 0.0, .fluid_damping_time = 0.0};
+  return {.solid_damping_time = 0.0, .fluid_viscosity = 0.0};
 }
 
 auto block() {

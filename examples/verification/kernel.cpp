@@ -106,7 +106,7 @@ void kernel(Report& report, Level level) {
   const std::vector<int> plane = full ? std::vector{16, 32, 64, 128} : std::vector{12, 24, 48};
   // Particles on the boundary are not jittered: coarse clouds in three dimensions are less so than fine ones.
   const std::vector<int> space = full ? std::vector{8, 12, 18, 27} : std::vector{8, 12, 16};
-  const std::vector<int> space_linear = full ? std::vector{18, 27, 40, 60} : std::vector{16, 24, 36};
+  const std::vector<int> space_linear = full ? std::vector{16, 24, 36, 48} : std::vector{16, 24, 36};
   converge<Rkpm<1, 1>>(report, "RKPM", line);
   converge<Rkpm<1, 2>>(report, "RKPM", line);
   converge<Rkpm<2, 1>>(report, "RKPM", plane);

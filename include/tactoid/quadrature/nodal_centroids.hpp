@@ -33,9 +33,11 @@ namespace tactoid {
 ///   body are exact. They are linear for a quadratic basis too, whose shares can be negative at corners.
 struct NodalCentroids {
   double solid_ratio = 0.1;             ///< stabilisation modulus over shear modulus, in solids; >= 0
-  double fluid_modulus = 500.0;         ///< stabilisation modulus in laws without a shear modulus, Pa; >= 0
-  double solid_damping_time = 2e-9;     ///< s, >= 0
-  double fluid_damping_time = 5e-8;     ///< s, >= 0
+  double solid_damping_time = 2e-9;     ///< stabilisation viscosity over modulus, in solids, s; >= 0
+  /// Stabilisation modulus in laws without a shear modulus, Pa; >= 0. It is tied to the reference shape, which a fluid
+  /// has not: keep it below the stresses of interest. A fluid of little viscosity needs it above its pressures.
+  double fluid_modulus = 5.0;
+  double fluid_viscosity = 2.5e-5;      ///< stabilisation viscosity there, Pa s; >= 0; without effect where the modulus is 0
   double condition_limit = 1e10;        ///< largest condition number of a moment matrix that is accepted
   double consistency_tolerance = 1e-13; ///< of the column conditions; 0: no correction (for comparisons only)
   std::size_t points_per_chunk = 0;  ///< points that one thread adds at a time; 0: by the size of the body
@@ -44,14 +46,14 @@ struct NodalCentroids {
     require_non_negative("NodalCentroids.solid_ratio", solid_ratio);
     require_non_negative("NodalCentroids.fluid_modulus", fluid_modulus, "Pa");
     require_non_negative("NodalCentroids.solid_damping_time", solid_damping_time, "s");
-    require_non_negative("NodalCentroids.fluid_damping_time", fluid_damping_time, "s");
+    require_non_negative("NodalCentroids.fluid_viscosity", fluid_viscosity, "Pa s");
     require_positive("NodalCentroids.condition_limit", condition_limit);
     require_non_negative("NodalCentroids.consistency_tolerance", consistency_tolerance);
   }
 
   [[nodiscard]] Stabilization stabilization(double shear_modulus) const {
     if (shear_modulus > 0.0) return {solid_ratio * shear_modulus, solid_damping_time};
-    return {fluid_modulus, fluid_damping_time};
+    return {fluid_modulus, fluid_modulus > 0.0 ? fluid_viscosity / fluid_modulus : 0.0};
   }
 
   template <Kernel K>
