@@ -158,7 +158,8 @@ TEST_CASE("Without the pressure of Young and Laplace, or with activity, the cell
 
 TEST_CASE("It rests with any viscosity, at the largest step that the library calls stable") {
   for (const double viscosity : {0.0, 0.03, 0.4}) {
-    const Rest r = suspend<SurfaceTension>(6, 3, 0.4e-6, laplace, 0.0, viscosity, 1.0);
+    // What viscosity makes unstable grows slowly at the limit: it needs time to show.
+    const Rest r = suspend<SurfaceTension>(6, 3, viscosity > 0.1 ? 1.2e-6 : 0.4e-6, laplace, 0.0, viscosity, 1.0);
     report("viscosity " + std::to_string(viscosity) + " Pa·s", r);
     CHECK(r.peak < 0.03);
     CHECK(r.rms < 0.005);

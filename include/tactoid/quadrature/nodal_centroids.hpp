@@ -35,8 +35,9 @@ struct NodalCentroids {
   double solid_ratio = 0.1;             ///< stabilisation modulus over shear modulus, in solids; >= 0
   double solid_damping_time = 2e-9;     ///< stabilisation viscosity over modulus, in solids, s; >= 0
   /// Stabilisation modulus in laws without a shear modulus, Pa; >= 0. It is tied to the reference shape, which a fluid
-  /// has not: keep it below the stresses of interest. A fluid of little viscosity needs it above its pressures.
-  double fluid_modulus = 5.0;
+  /// has not. Below the stresses of interest it carries no load (5 Pa in the spreading examples); above the pressures it
+  /// keeps the currents of the discretisation small, and holds a fluid of little viscosity together.
+  double fluid_modulus = 500.0;
   double fluid_viscosity = 2.5e-5;      ///< stabilisation viscosity there, Pa s; >= 0; without effect where the modulus is 0
   double condition_limit = 1e10;        ///< largest condition number of a moment matrix that is accepted
   double consistency_tolerance = 1e-13; ///< of the column conditions; 0: no correction (for comparisons only)
