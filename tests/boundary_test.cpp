@@ -256,7 +256,7 @@ TEST_CASE("stiffness rates bound the largest eigenvalue; same bits for one and t
     Field v = body.velocity;
     double omega2 = 0.0;
     for (int iteration = 0; iteration < 300; ++iteration) {  // power iteration of M⁻¹K by differences of the force
-      const double h = 1e-3 * um;
+      const double h = 1e-4 * um;
       for (std::size_t i = 0; i < x.size(); ++i) body.position[i] = x[i] + h * v[i];
       term.apply(body.fields(), 0.0);
       const Field plus = body.force;
