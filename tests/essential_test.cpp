@@ -172,10 +172,10 @@ TEST_CASE("Statics that cannot succeed say why") {
 
 namespace {
 
-/// Largest difference between the solutions by conjugate gradients and by factorisation, over the displacement.
 /// A law whose tangent stays positive definite under this pull; that of a nearly incompressible one does not.
 const NeoHookean compressible = NeoHookean::from_young(1e4, 0.3);
 
+/// Largest difference between the solutions by conjugate gradients and by factorisation, over the displacement.
 template <class Body>
 void check_solvers(const Body& start) {
   const double by = 0.2 * length;

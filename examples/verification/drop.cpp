@@ -268,9 +268,8 @@ void drop(Report& report, Level level) {
 
   // The stabilisation is tied to the reference shape. That of the spreading examples is a sixth of the Laplace pressure;
   // the default of the rule, 17 times that pressure, holds a drop of little viscosity together, and slows relaxation down.
-  constexpr double soft = 5.0;
-  const double stiff = NodalCentroids{}.fluid_modulus;
   Drop d;
+  const double soft = d.fluid_modulus, stiff = NodalCentroids{}.fluid_modulus;
   laplace<SurfaceTension>(report, "variational", d);
   laplace<CurvatureSurfaceTension>(report, "curvature", d);
   if (level == Level::full) {

@@ -13,7 +13,7 @@ namespace tactoid {
 /// A ball with a concentric core (a cell with its nucleus): a cube of cells rounded to the core's sphere, and shells
 /// of cells around it. Nodes lie exactly on both spheres, so the interface of the two regions runs through particles.
 /// Shells are of about equal width: where they widen outward as the spacing along the sphere does, the lowest modes of a
-/// ball with a small core are much too slow (l = 2 of the default counts, core of 0.382 R: 2.6 % against 1.0 %).
+/// ball with a small core are much too slow (l = 2 of the default counts, core of 0.382 R: 2.6 % against 0.9 %).
 struct Ball {
   double radius = 0.0;                       ///< R, m, > 0
   double core_radius = 0.0;                  ///< radius of the core (nucleus), m, in (0, radius); unused if shells = 0
