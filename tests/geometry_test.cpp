@@ -336,6 +336,10 @@ TEST_CASE("wrong parameters are named") {
   CHECK(contains(message_of([] { (void)ball({.radius = 1.0, .core_radius = 0.5, .core_cells = 1}); }),
                  "Ball.core_cells"));
   CHECK(contains(message_of([] { (void)ball({.radius = 1.0, .core_radius = 0.5, .shells = -1}); }), "Ball.shells"));
+  for (const double grading : {-0.1, 1.0, std::nan("")}) {
+    CHECK(contains(message_of([&] { (void)ball({.radius = 1.0, .core_radius = 0.5, .shell_grading = grading}); }),
+                   "Ball.shell_grading"));
+  }
   CHECK(contains(message_of([] { (void)disc({.radius = 1.0}); }), "Disc.height = 0 m"));
   CHECK(contains(message_of([] { (void)disc({.radius = 1.0, .height = 1.0, .layers = 1}); }), "Disc.layers = 1"));
   CHECK(contains(message_of([] { (void)disc({.radius = 0.0, .height = 1.0}); }), "Disc.radius"));
