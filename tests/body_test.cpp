@@ -156,12 +156,14 @@ struct Plain {
         const double kappa = region.stabilization.modulus * table.stabilization_scale[q],
                      tau = region.stabilization.damping_time;
         const Index I = table.owner[q];
-        for (const TableEntry& e : table.row(q)) {
+        const auto weights = table.bonds(q);
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+          const TableEntry& e = table.row(q)[k];
           const Vector3 dX = (table.particle_position[e.particle] - table.particle_position[I]).head<3>();
           const Vector3 du = (body.displacement[e.particle] - body.displacement[I]).head<3>();
           const Vector3 dv = (body.velocity[e.particle] - body.velocity[I]).head<3>();
           const Vector3 residual = du - (F - Tensor3::Identity()) * dX, rate_of = dv - p.deformation_rate * dX;
-          const double w = kappa * static_cast<double>(e.weight);
+          const double w = kappa * static_cast<double>(weights[k]);
           totals.stabilization_energy += 0.5 * w * residual.squaredNorm();
           totals.dissipated_power += tau * w * rate_of.squaredNorm();
           const Vector3 g = w * (residual + tau * rate_of);

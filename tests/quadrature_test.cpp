@@ -69,7 +69,6 @@ void check_table(const PointCloud<D>& cloud, const PointTable& table, const std:
       if (padding) {
         CHECK(k + 1 == row.size());
         CHECK(G.isZero(0.0));
-        CHECK(row[k].weight == 0.0F);
         continue;
       }
       const Vector3 d =
@@ -182,15 +181,28 @@ TEST_CASE("A ball with two regions gives particles on the interface one point of
 TEST_CASE("The stabilisation: none for affine fields, and none in the table of the Gauss cells") {
   const PointCloud<2> cloud = jitter(rectangle({.size = {1e-6, 1e-6}, .cells = {6, 6}}), 0.2);
   const PointTable table = NodalCentroids{}.build(cloud, Rkpm<2>{});
+  const std::vector<double> spacing = longest_edges(cloud);
+  std::size_t bonds = 0;
   for (std::size_t q = 0; q < table.points(); ++q) {
+    const auto weights = table.bonds(q);
+    CHECK(weights.size() % 2 == 0);
+    REQUIRE(weights.size() <= table.row(q).size());
     double moment = 0.0;
-    for (const TableEntry& entry : table.row(q)) {
-      CHECK(entry.weight >= 0.0F);
-      moment += static_cast<double>(entry.weight) *
-                (table.particle_position[entry.particle] - table.particle_position[table.owner[q]]).squaredNorm();
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const Index J = table.row(q)[k].particle;
+      const double distance = (table.particle_position[J] - table.particle_position[table.owner[q]]).norm();
+      const double x = distance / (1.25 * spacing[J]);
+      CHECK(weights[k] == doctest::Approx(J == table.owner[q] || x >= 1.0 ? 0.0 : 1.0 - x * x).epsilon(1e-6));
+      moment += static_cast<double>(weights[k]) * distance * distance;
+      bonds += weights[k] > 0.0F;
     }
     CHECK(table.stabilization_scale[q] * moment == test::relative(2.0 * table.volume[q]).epsilon(1e-12));
   }
+  std::size_t expected = 0;  // every pair within reach, from both its ends
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    for (std::size_t j = 0; j < cloud.size(); ++j)
+      expected += i != j && (cloud.positions[i] - cloud.positions[j]).norm() < 1.25 * spacing[j];
+  CHECK(bonds == expected);
   CHECK(NodalCentroids{.solid_ratio = 0.2}.stabilization(100.0).modulus == 20.0);
   CHECK(NodalCentroids{.fluid_modulus = 7.0}.stabilization(0.0).modulus == 7.0);
   CHECK(NodalCentroids{.fluid_modulus = 4.0, .fluid_viscosity = 2e-5}.stabilization(0.0).damping_time == 5e-6);
@@ -263,6 +275,8 @@ TEST_CASE("A support that is too small is an error that names the point, the nei
 }
 
 TEST_CASE("Parameters out of range are rejected by name") {
+  CHECK_THROWS_WITH_AS(NodalCentroids{.stabilization_reach = 1.0}.validate(),
+                       "NodalCentroids.stabilization_reach = 1 is not allowed: it must be above 1.", ParameterError);
   CHECK_THROWS_WITH_AS(NodalCentroids{.solid_ratio = -0.1}.validate(),
                        "NodalCentroids.solid_ratio = -0.1 is not allowed: it must be zero or positive, and finite.",
                        ParameterError);

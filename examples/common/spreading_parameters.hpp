@@ -55,7 +55,7 @@ struct SpreadingParameters {
 
   // Numerics
   double support = 1.75;           ///< of the kernel, per longest edge
-  double hourglass = 0.1;          ///< stabilisation modulus over the shear modulus, in the solids
+  double hourglass = 0.12;         ///< stabilisation modulus over the shear modulus, in the solids
   double fluid_hourglass = 5.0;    ///< stabilisation modulus of the cytoplasm, Pa
   double safety = 0.8;             ///< of the stable time step
   double time_step = 0.0;          ///< s; 0: chosen by the library

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -27,12 +28,15 @@ namespace tactoid {
 ///   (make_consistent): linear patch test to round-off.
 /// - The stabilising energy of particle I, owner of q, is
 ///     ½ c V_q (D / Σ_J w_J |ΔX_J|²) Σ_J w_J |Δu_J − (F_q − 1) ΔX_J|²,   Δ_J from the particle (not the centroid),
-///   varied exactly. It vanishes for affine fields and leaves six zero modes in 3D (three in 2D).
+///   varied exactly. It vanishes for affine fields and leaves six zero modes in 3D (three in 2D). Its pairs are the
+///   nearest particles: w_J = 1 − (|ΔX_J| / (`stabilization_reach` × spacing of J))², 0 beyond. Short bonds act on the
+///   shortest waves, which are the spurious ones; the whole support costs more and separates them less.
 ///   c = `solid_ratio` × the shear modulus of the law, or `fluid_modulus` where the law has none.
 /// - The mass of a point goes to its neighbours by linear shape functions φ_I(X_q): mass and centre of mass of the
 ///   body are exact. They are linear for a quadratic basis too, whose shares can be negative at corners.
 struct NodalCentroids {
-  double solid_ratio = 0.1;             ///< stabilisation modulus over shear modulus, in solids; >= 0
+  double solid_ratio = 0.12;            ///< stabilisation modulus over shear modulus, in solids; >= 0
+  double stabilization_reach = 1.25;    ///< of the bonds of the stabilisation, in spacings (longest edges) of a particle; > 1
   double solid_damping_time = 2e-9;     ///< stabilisation viscosity over modulus, in solids, s; >= 0
   /// Stabilisation modulus in laws without a shear modulus, Pa; >= 0. It is tied to the reference shape, which a fluid
   /// has not. Below the stresses of interest it carries no load (5 Pa in the spreading examples); above the pressures it
@@ -45,6 +49,8 @@ struct NodalCentroids {
 
   void validate() const {
     require_non_negative("NodalCentroids.solid_ratio", solid_ratio);
+    if (!(stabilization_reach > 1.0) || !std::isfinite(stabilization_reach))
+      reject("NodalCentroids.stabilization_reach", stabilization_reach, "", "above 1");
     require_non_negative("NodalCentroids.fluid_modulus", fluid_modulus, "Pa");
     require_non_negative("NodalCentroids.solid_damping_time", solid_damping_time, "s");
     require_non_negative("NodalCentroids.fluid_viscosity", fluid_viscosity, "Pa s");
@@ -104,26 +110,45 @@ struct NodalCentroids {
       for (const Point<D>& b : normals) boundary.push_back(pad(b));
       make_consistent(table, weights, boundary, consistency_tolerance);
     }
-    weigh_stabilization<typename K::Window>(table, cloud, supports);
+    weigh_stabilization(table, cloud);
     return table;
   }
 
  private:
-  template <class Window, int D>
-  static void weigh_stabilization(PointTable& table, const PointCloud<D>& cloud, const std::vector<double>& supports) {
+  /// Weights of the stabilisation; its pairs move to the front of each row.
+  template <int D>
+  void weigh_stabilization(PointTable& table, const PointCloud<D>& cloud) const {
+    const std::vector<double> spacing = longest_edges(cloud);
     table.stabilization_scale.assign(table.points(), 0.0);
-    parallel_for(table.points(), [&](std::size_t q) {
+    table.bond_offsets.assign(1, 0);
+    std::vector<std::pair<TableEntry, double>> bonded, others;  // with their shares of the mass
+    for (std::size_t q = 0; q < table.points(); ++q) {
       const Index owner = table.owner[q];
-      double sum = 0.0;
-      for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e) {
-        TableEntry& entry = table.entries[e];
-        if (entry.particle == owner || is_padding(table, q, e)) continue;
-        const double distance = cloud.difference(cloud.positions[owner], cloud.positions[entry.particle]).norm();
-        entry.weight = static_cast<float>(Window::value(distance / supports[entry.particle]));
-        sum += static_cast<double>(entry.weight) * distance * distance;
+      std::size_t e = table.offsets[q];
+      double moment = 0.0;
+      bonded.clear(), others.clear();
+      for (; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) {
+        const Index particle = table.entries[e].particle;
+        const double distance = cloud.difference(cloud.positions[owner], cloud.positions[particle]).norm();
+        const double x = distance / (stabilization_reach * spacing[particle]);
+        const bool bond = particle != owner && x < 1.0;
+        (bond ? bonded : others).emplace_back(table.entries[e], table.mass_shares[e]);
+        if (!bond) continue;
+        table.bond_weights.push_back(static_cast<float>(1.0 - x * x));
+        moment += static_cast<double>(table.bond_weights.back()) * distance * distance;
       }
-      table.stabilization_scale[q] = table.volume[q] * D / sum;
-    });
+      if (bonded.size() % 2 == 1) table.bond_weights.push_back(0.0F);
+      table.bond_offsets.push_back(table.bond_weights.size());
+      const bool padded = e < table.offsets[q + 1];
+      e = table.offsets[q];
+      for (const auto* part : {&bonded, &others})
+        for (const auto& [entry, share] : *part) {
+          table.entries[e] = entry;
+          table.mass_shares[e++] = share;
+        }
+      if (padded) table.entries[e].particle = table.entries[table.offsets[q]].particle;
+      table.stabilization_scale[q] = moment > 0.0 ? table.volume[q] * D / moment : 0.0;
+    }
   }
 };
 

@@ -13,7 +13,6 @@ namespace tactoid {
 struct alignas(32) TableEntry {
   double gradient[3] = {0.0, 0.0, 0.0};  ///< ∇₀φ_I(X_q), or the value-based operator G_qI; 1/m
   Index particle = 0;                    ///< I
-  float weight = 0.0F;                   ///< stabilisation weight of the pair (0: none)
 };
 
 /// Compressed rows of (particle, value) pairs: a linear map from the unknowns to values.
@@ -56,6 +55,8 @@ struct PointTable {
 
   Field particle_position;                  ///< X_I, m
   std::vector<double> stabilization_scale;  ///< V_q · D / Σ_J w_J |X_J − X_I|², 1/m² · m³; empty: none
+  std::vector<std::size_t> bond_offsets;    ///< weights of q: bond_weights[bond_offsets[q]] .. [bond_offsets[q + 1] - 1]; empty: none
+  std::vector<float> bond_weights;          ///< w_J of the stabilisation, of the first entries of each row; an even number per row
   Vector3 period = Vector3::Zero();         ///< of periodic directions, m; 0 where not periodic
 
   std::vector<PointChunk> chunks;               ///< sorted by colour
@@ -67,11 +68,17 @@ struct PointTable {
   [[nodiscard]] std::span<const TableEntry> row(std::size_t q) const {
     return {entries.data() + offsets[q], offsets[q + 1] - offsets[q]};
   }
+  /// Weights of the stabilisation in row q: those of its first entries; the others have none.
+  [[nodiscard]] std::span<const float> bonds(std::size_t q) const {
+    if (bond_offsets.empty()) return {};
+    return {bond_weights.data() + bond_offsets[q], bond_offsets[q + 1] - bond_offsets[q]};
+  }
   /// Bytes that the table holds.
   [[nodiscard]] std::size_t memory() const {
     return entries.capacity() * sizeof(TableEntry) + (point_values.capacity() + mass_shares.capacity()) * sizeof(double) +
            points() * (sizeof(Vector3) + 2 * sizeof(double) + 2 * sizeof(Index) + sizeof(std::size_t)) +
-           particle_position.capacity() * sizeof(Vector4) + particle_values.values.capacity() * 12;
+           bond_offsets.capacity() * sizeof(std::size_t) + bond_weights.capacity() * sizeof(float) +
+           stabilization_scale.capacity() * sizeof(double) + particle_position.capacity() * sizeof(Vector4) + particle_values.values.capacity() * 12;
   }
 };
 

@@ -51,9 +51,10 @@ inline void lay_out_rows(PointTable& table, const NeighborTable& neighbors) {
   }
 }
 
-/// Rows are sorted by particle, so an entry that does not increase is the padding at the end.
+/// The padding at the end of a row repeats its first particle.
 [[nodiscard]] inline bool is_padding(const PointTable& table, std::size_t q, std::size_t e) {
-  return e > table.offsets[q] && table.entries[e].particle <= table.entries[e - 1].particle;
+  const std::size_t first = table.offsets[q];
+  return e > first && e + 1 == table.offsets[q + 1] && table.entries[e].particle == table.entries[first].particle;
 }
 
 }  // namespace tactoid

@@ -425,12 +425,13 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         const auto row = table_.row(q);
         if (q + W < chunk.end) rows::prefetch(table_.row(q + W));
         if (kappa > 0.0) {
-          const auto power = rows::stabilize(row, table_.owner[q], kappa * table_.stabilization_scale[q], tau, table_.period,
+          const auto weights = table_.bonds(q);
+          const auto power = rows::stabilize(row, weights, table_.owner[q], kappa * table_.stabilization_scale[q], tau, table_.period,
                                              table_.particle_position.data(), motion<Rate>(), gradients[l].motion,
                                              held.data(), force.data(), flux);
           totals.stabilization_energy += power.energy;
           totals.dissipated_power += power.dissipated;
-          rows::scatter(row, flux, held.data(), force.data());
+          rows::scatter(row, flux, std::span(held).first(weights.size()), force.data());
         } else {
           rows::scatter(row, flux, force.data());
         }

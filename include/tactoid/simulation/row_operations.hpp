@@ -78,10 +78,11 @@ inline void scatter(std::span<const TableEntry> row, const Gradient<>& flux, Vec
   for (const TableEntry& entry : row) f[entry.particle] -= contracted(entry, local);
 }
 
-/// The same with a force held for each pair: f_I ← f_I − held − Σ_K flux_K G_qI,K.
-inline void scatter(std::span<const TableEntry> row, const Gradient<>& flux, const Vector4* held, Vector4* f) {
+/// The same with a force held for each of the first pairs: f_I ← f_I − held − Σ_K flux_K G_qI,K.
+inline void scatter(std::span<const TableEntry> row, const Gradient<>& flux, std::span<const Vector4> held, Vector4* f) {
   const Gradient<> local = flux;
-  for (const TableEntry& entry : row) f[entry.particle] -= contracted(entry, local) + *held++;
+  for (std::size_t k = 0; k < held.size(); ++k) f[row[k].particle] -= contracted(row[k], local) + held[k];
+  for (std::size_t k = held.size(); k < row.size(); ++k) f[row[k].particle] -= contracted(row[k], local);
 }
 
 /// Asks for a row that will be needed soon, so that it comes from memory while other rows are computed.
@@ -99,11 +100,12 @@ struct StabilizationPower {
 
 /// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
 ///   r_J = u_J − u_I − (F_q − 1) ΔX_J,   energy ½ κ Σ_J w_J |r_J|²,   force from κ w_J (r_J + τ ṙ_J).
-/// Writes the force of each pair to `held`, adds the owner's to f, and subtracts from `flux` the part that acts through
-/// F_q. `motion` holds u of the particles, or (u, v) where the stabilisation is damped, and `gradient` its gradient.
+/// over the `weights` of the first entries of the row. Writes the force of each of these pairs to `held`, adds the
+/// owner's to f, and subtracts from `flux` the part that acts through F_q. `motion` holds u of the particles, or (u, v) where the stabilisation is damped, and `gradient` its gradient.
 /// Without periodic directions r_J = (u_J − H X_J) − (u_I − H X_I), which saves the differences of positions.
 template <bool Periodic, int N>
-StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, double kappa, double tau, const Vector3& period,
+StabilizationPower stabilize(std::span<const TableEntry> row, std::span<const float> weights, Index owner, double kappa,
+                             double tau, const Vector3& period,
                              const Vector4* X, const Values<N>* motion, const Gradient<N>& gradient, Vector4* held,
                              Vector4* f, Gradient<>& flux) {
   const Vector4 Xi = X[owner];
@@ -115,8 +117,8 @@ StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, doubl
   struct Sums {
     Values<N> force = Values<N>::Zero(), energy = Values<N>::Zero(), moment[3] = {force, force, force};
   };
-  const auto visit = [&](const TableEntry& entry, Sums& sums, Vector4& pair_force) {
-    const double w = kappa * static_cast<double>(entry.weight);
+  const auto visit = [&](const TableEntry& entry, float weight, Sums& sums, Vector4& pair_force) {
+    const double w = kappa * static_cast<double>(weight);
     const double* XJ = X[entry.particle].data();
     double x[3] = {XJ[0], XJ[1], XJ[2]};
     if constexpr (Periodic)
@@ -134,9 +136,9 @@ StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, doubl
     else pair_force = force;
   };
   Sums even, odd;
-  for (std::size_t k = 0; k < row.size(); k += 2) {
-    visit(row[k], even, held[k]);
-    visit(row[k + 1], odd, held[k + 1]);
+  for (std::size_t k = 0; k < weights.size(); k += 2) {
+    visit(row[k], weights[k], even, held[k]);
+    visit(row[k + 1], weights[k + 1], odd, held[k + 1]);
   }
   const auto damped = [&](const Values<N>& a) -> Vector4 {
     if constexpr (N == 8) return a.template head<4>() + tau * a.template tail<4>();
@@ -155,11 +157,12 @@ StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, doubl
 
 /// The same, with the choice of the loop made once per point.
 template <int N>
-StabilizationPower stabilize(std::span<const TableEntry> row, Index owner, double kappa, double tau, const Vector3& period,
+StabilizationPower stabilize(std::span<const TableEntry> row, std::span<const float> weights, Index owner, double kappa,
+                             double tau, const Vector3& period,
                              const Vector4* X, const Values<N>* motion, const Gradient<N>& gradient, Vector4* held,
                              Vector4* f, Gradient<>& flux) {
-  if (period.any()) return stabilize<true>(row, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
-  return stabilize<false>(row, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
+  if (period.any()) return stabilize<true>(row, weights, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
+  return stabilize<false>(row, weights, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
 }
 
 }  // namespace tactoid::rows

@@ -69,13 +69,14 @@ template <class Law, class T>
   const auto n = static_cast<Eigen::Index>(size);
   const Index owner = table.owner[q];
   Eigen::MatrixXd c(n, n);
-  Eigen::VectorXd w(n);
+  const auto weights = table.bonds(q);
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(n);
   for (Eigen::Index J = 0; J < n; ++J) {
     const TableEntry& entry = row[static_cast<std::size_t>(J)];
     Vector3 dX = (table.particle_position[entry.particle] - table.particle_position[owner]).head<3>();
     for (int k = 0; k < 3; ++k)
       if (table.period[k] > 0.0) dX[k] -= table.period[k] * std::round(dX[k] / table.period[k]);
-    w[J] = kappa * static_cast<double>(entry.weight);
+    if (J < static_cast<Eigen::Index>(weights.size())) w[J] = kappa * static_cast<double>(weights[static_cast<std::size_t>(J)]);
     for (Eigen::Index M = 0; M < n; ++M) {
       const TableEntry& other = row[static_cast<std::size_t>(M)];
       c(J, M) = (J == M ? 1.0 : 0.0) - (other.particle == owner ? 1.0 : 0.0);
@@ -93,8 +94,9 @@ void for_each_block(const StiffnessMatrix& K, std::span<const TableEntry> row, c
     const auto column = static_cast<Eigen::Index>(D * row[b].particle);
     const int* inner = K.innerIndexPtr() + K.outerIndexPtr()[column];
     int place = 0;
-    for (std::size_t a = 0; a < row.size(); ++a) {
+    for (std::size_t a = 0; a < row.size(); ++a) {  // two ascending runs: those of the stabilisation, then the others
       const int wanted = static_cast<int>(D * row[a].particle);
+      if (inner[place] > wanted) place = 0;
       while (inner[place] != wanted) place += D;
       add(a, b, place);
     }
