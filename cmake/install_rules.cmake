@@ -1,4 +1,4 @@
-# install(): headers, the exported target, and the package files for find_package(tactoid).
+# install(): headers, the exported target, the package files for find_package(tactoid), and tactoid.pc for pkg-config.
 include_guard()
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -28,4 +28,10 @@ write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/tactoidConfigVersi
                                  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/tactoidConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/tactoidConfigVersion.cmake"
         DESTINATION "${tactoid_package_dir}")
+set(tactoid_openmp_flags "")
+if(TACTOID_HAVE_OPENMP)
+  list(JOIN OpenMP_CXX_FLAGS " " tactoid_openmp_flags)
+endif()
+configure_file("${CMAKE_CURRENT_LIST_DIR}/tactoid.pc.in" "${CMAKE_CURRENT_BINARY_DIR}/tactoid.pc" @ONLY)
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/tactoid.pc" DESTINATION "${CMAKE_INSTALL_DATADIR}/pkgconfig")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -1,4 +1,5 @@
-# Builds and runs the consumer in one way. cmake -D WAY=… -D SOURCE=<project> -D WORK=<scratch> -D COMPILER=… -P run.cmake
+# Builds and runs the consumer in one way: find_package, add_subdirectory, fetch_content, plain_include, pkg_config, deb.
+#   cmake -D WAY=… -D SOURCE=<project> -D WORK=<scratch> -D COMPILER=… [-D STANDARD=23] -P run.cmake
 cmake_minimum_required(VERSION 3.25)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -9,10 +10,15 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE "${WORK}")
+if(NOT STANDARD)
+  set(STANDARD 20)
+endif()
 set(options -D "CMAKE_CXX_COMPILER=${COMPILER}" -D CMAKE_BUILD_TYPE=Release)
-if(WAY STREQUAL "find_package")
+if(WAY MATCHES "^(find_package|pkg_config|deb)$")
   run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${WORK}/library" ${options} -D TACTOID_BUILD_TESTS=OFF
       -D TACTOID_BUILD_EXAMPLES=OFF -D TACTOID_BUILD_BENCHMARKS=OFF)
+endif()
+if(WAY STREQUAL "find_package")
   run(${CMAKE_COMMAND} --install "${WORK}/library" --prefix "${WORK}/prefix")
   # The package may not lean on the folders it came from.
   file(GLOB_RECURSE installed "${WORK}/prefix/*.cmake")
@@ -30,6 +36,39 @@ if(WAY STREQUAL "find_package")
   endif()
   list(APPEND options -D "CMAKE_PREFIX_PATH=${WORK}/prefix")
 endif()
+# By hand: what a user writes who has no build system.
+set(by_hand ${COMPILER} -std=c++${STANDARD} -O1 "${SOURCE}/tests/consumer/main.cpp" -o "${WORK}/consumer")
+if(WAY STREQUAL "plain_include")
+  file(MAKE_DIRECTORY "${WORK}")
+  run(${by_hand} "-I${SOURCE}/include" -I/usr/include/eigen3 -lfmt)
+  run("${WORK}/consumer")
+  return()
+endif()
+if(WAY STREQUAL "pkg_config")
+  run(${CMAKE_COMMAND} --install "${WORK}/library" --prefix "${WORK}/prefix")
+  set(ENV{PKG_CONFIG_PATH} "${WORK}/prefix/share/pkgconfig")
+  execute_process(COMMAND pkg-config --cflags --libs tactoid COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE flags)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  run(${by_hand} ${flags})
+  run("${WORK}/consumer")
+  return()
+endif()
+
+# The Debian package, installed by dpkg into a folder that plays the machine.
+if(WAY STREQUAL "deb")
+  run(cpack -G DEB --config "${WORK}/library/CPackConfig.cmake" -B "${WORK}/package")
+  file(GLOB package "${WORK}/package/*_all.deb")
+  set(root "${WORK}/root")
+  file(MAKE_DIRECTORY "${root}/var/lib/dpkg/info" "${root}/var/lib/dpkg/updates")
+  file(TOUCH "${root}/var/lib/dpkg/status")
+  run(dpkg --root=${root} --force-not-root --force-depends --force-script-chrootless --log=${WORK}/dpkg.log --install ${package})
+  run(dpkg --root=${root} --status libtactoid-dev)
+  execute_process(COMMAND dpkg-deb --field ${package} Depends COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE needed)
+  string(REGEX MATCHALL "lib[a-z0-9]+-dev" needed "${needed}")
+  run(dpkg --status ${needed}) # of the machine: the names exist, and the consumer is built with them
+  list(APPEND options -D "CMAKE_PREFIX_PATH=${root}/usr")
+endif()
+list(APPEND options -D CMAKE_CXX_STANDARD=${STANDARD})
 run(${CMAKE_COMMAND} -S "${SOURCE}/tests/consumer" -B "${WORK}/build" ${options} -D WAY=${WAY} -D
     "TACTOID_SOURCE=${SOURCE}")
 run(${CMAKE_COMMAND} --build "${WORK}/build")

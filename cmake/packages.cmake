@@ -1,0 +1,15 @@
+# cpack -G DEB: the headers as a Debian/Ubuntu package for every architecture; cpack -G TGZ: the same as an archive.
+include_guard()
+set(CPACK_PACKAGE_NAME libtactoid-dev)
+set(CPACK_PACKAGE_VENDOR "The Tactoid developers")
+set(CPACK_PACKAGE_CONTACT "The Tactoid developers")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DESCRIPTION
+    "A C++20 framework of kernels, quadrature rules, material laws, contacts and integrators from which simulations of cells and other soft bodies are composed.")
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_GENERATOR TGZ)
+set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libnanoflann-dev (>= 1.4), libfmt-dev (>= 9)")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+include(CPack)

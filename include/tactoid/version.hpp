@@ -1,0 +1,4 @@
+#pragma once
+
+/// The version alone, for `#if TACTOID_VERSION_MAJOR …`.
+#include <tactoid/core/version.hpp>

@@ -1,0 +1,12 @@
+# Files of tools that cannot read version.hpp name the same version. cmake -D ROOT=<project> -D VERSION=x.y.z -P versions.cmake
+cmake_minimum_required(VERSION 3.25)
+function(expect file pattern)
+  file(READ "${ROOT}/${file}" text)
+  if(NOT text MATCHES "${pattern}" OR NOT CMAKE_MATCH_1 STREQUAL VERSION)
+    message(FATAL_ERROR "${file} names version \"${CMAKE_MATCH_1}\"; include/tactoid/core/version.hpp has ${VERSION}.")
+  endif()
+endfunction()
+expect(include/tactoid/core/version.hpp "version = \"([0-9.]+)\"")
+expect(CITATION.cff "\nversion: ([0-9.]+)")
+expect(CHANGELOG.md "\n## ([0-9.]+)")
+expect(cmake/vcpkg/tactoid/vcpkg.json "\"version\": \"([0-9.]+)\"")
