@@ -65,6 +65,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
       static_assert(Pair::first < body_count && Pair::second < body_count, "A contact names a body that does not exist.");
+      static_assert(Contact<decltype(between.contact), dimension>, "between<…>() takes a Contact.");
       between.contact.initialize(std::get<Pair::first>(bodies_).cloud(), fields_[Pair::first].view(),
                                  std::get<Pair::second>(bodies_).cloud(), fields_[Pair::second].view());
     });
