@@ -308,6 +308,19 @@ TEST_CASE("A graded law that is constant is the uniform law; one that varies is 
     return body.add_internal_forces(0.0, false).strain_energy;
   };
   CHECK(stretch(slope) == test::relative(1.5 * stretch(uniform)).epsilon(1e-9));
+
+  // So is the stabilisation: three times as strong where the law is three times as stiff.
+  auto step = block_of(Graded{[law](const Vector3& X) { return law.scaled(X[0] < 0.3e-6 ? 1.0 : 3.0); }});
+  const auto shaken_at_the_end = [](auto& body) {
+    body.displacement = random_field(body.size(), 1e-8, 11);
+    for (std::size_t i = 0; i < body.size(); ++i)
+      if (body.table().particle_position[i][0] < 0.8e-6) body.displacement[i].setZero();
+    return body.add_internal_forces(0.0, false);
+  };
+  const BodyTotals weak = shaken_at_the_end(uniform), strong = shaken_at_the_end(step);
+  CHECK(weak.stabilization_energy > 0.0);
+  CHECK(strong.stabilization_energy == test::relative(3.0 * weak.stabilization_energy).epsilon(1e-12));
+  CHECK(strong.strain_energy == test::relative(3.0 * weak.strain_energy).epsilon(1e-12));
 }
 
 TEST_CASE("Masses and volumes of regions") {

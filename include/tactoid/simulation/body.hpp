@@ -278,7 +278,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     }
     for (Index& r : table_.region) r = number[r];
     for (PointChunk& chunk : table_.chunks) chunk.region = number[chunk.region];
-    (std::get<I>(laws_).prepare(std::get<I>(materials.regions).material, range[I].first, range[I].second, table_.position, quadrature_), ...);
+    (std::get<I>(laws_).prepare(std::get<I>(materials.regions).material, range[I].first, range[I].second, table_.position,
+                                quadrature_, table_.stabilization_scale), ...);
   }
 
   void assemble_masses() {

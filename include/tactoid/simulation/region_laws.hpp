@@ -38,9 +38,11 @@ struct RegionLaw {
   [[nodiscard]] const Law& law(std::size_t q) const { return laws[graded ? q - begin : 0]; }
   [[nodiscard]] std::size_t block(std::size_t q) const { return (q - begin) / static_cast<std::size_t>(width); }
 
+  /// `scale`, the stabilisation's factor per point of the table (empty without one), takes up how far a graded law's
+  /// stabilisation is above the least of the region, which is `stabilization`.
   template <class Q>
   void prepare(const M& material, std::size_t first, std::size_t last, const std::vector<Vector3>& positions,
-               const Q& quadrature) {
+               const Q& quadrature, std::vector<double>& scale) {
     begin = first;
     end = last;
     if constexpr (graded) {
@@ -58,6 +60,11 @@ struct RegionLaw {
     histories.resize((end - begin + width - 1) / static_cast<std::size_t>(width));
     advanced = histories;
     stabilization = quadrature.stabilization(softest);
+    if constexpr (graded) {
+      if (scale.empty() || !(stabilization.modulus > 0.0)) return;
+      for (std::size_t q = begin; q < end; ++q)
+        scale[q] *= quadrature.stabilization(shear_modulus(law(q))).modulus / stabilization.modulus;
+    }
   }
 };
 
