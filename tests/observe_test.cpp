@@ -95,6 +95,7 @@ TEST_CASE("A front modulated by cos m θ: that mode has the amplitude, the other
       CHECK(front.radius == Close{6 * um, 1e-3});
       CHECK(front.area == Close{pi * 36 * um * um * (1.0 + 0.5 * amplitude * amplitude), 2e-3});
       CHECK(front.modes[static_cast<std::size_t>(m)] == Close{amplitude, 0.03});
+      CHECK(std::abs(front.phases[static_cast<std::size_t>(m)] + 0.7) < 0.03);
       CHECK(front.modulation == Close{amplitude / std::sqrt(2.0), 0.03});
       for (std::size_t k = 1; k < front.modes.size(); ++k)
         if (k != static_cast<std::size_t>(m)) CHECK(front.modes[k] < 0.001 + 0.02 * amplitude);
@@ -183,6 +184,34 @@ TEST_CASE("A pocket under the cell lessens the area and leaves the front as it i
   CHECK((holed.center - whole.center).norm() < 1e-6 * um);
   CHECK(holed.centroid[0] < whole.centroid[0] - 0.1 * um);
   for (std::size_t m = 1; m < whole.modes.size(); ++m) CHECK(std::abs(holed.modes[m] - whole.modes[m]) < 1e-7);
+}
+
+TEST_CASE("How far a displaced circle has come in a direction") {
+  Footprint disc(4);
+  const double R = 5.3 * um, shift = 0.8 * um;
+  const ContactFront front = disc.front(around(R, 0.0, 0, shift, 0.0));
+  REQUIRE(front.outline.size() > 100);
+  for (const Vector3& x : front.outline) CHECK((x - front.center).norm() == Close{R, 2e-3});
+  const auto exact = [&](double toward, double half_angle) {  // the mean over the arc in the sector
+    double sum = 0.0, count = 0.0;
+    for (int k = 0; k < 100000; ++k) {
+      const double angle = 2.0 * pi * k / 100000.0;
+      const double x = toward * (shift + R * std::cos(angle)), y = R * std::sin(angle);
+      if (std::abs(std::atan2(y, x)) > half_angle) continue;
+      sum += std::hypot(x, y);
+      count += 1.0;
+    }
+    return sum / count;
+  };
+  const Vector3 origin = Vector3::Zero(), x = Vector3::UnitX();
+  CHECK(exact(1.0, pi / 4.0) - exact(-1.0, pi / 4.0) == Close{2.0 * 0.9 * shift, 0.02});
+  for (const double half_angle : {pi / 4.0, pi / 8.0}) {
+    CHECK(front_radius(front, origin, x, half_angle) == Close{exact(1.0, half_angle), 2e-3});
+    CHECK(front_radius(front, origin, -x, half_angle) == Close{exact(-1.0, half_angle), 2e-3});
+  }
+  CHECK(front_radius(front, front.center, Vector3::UnitY()) == Close{R, 2e-3});
+  CHECK(front_radius(front, origin + 3 * um * Vector3::UnitZ(), x) == front_radius(front, origin, x));
+  CHECK(front_radius(ContactFront{}, origin, x) == 0.0);
 }
 
 TEST_CASE("The area is that projected on the substrate, whatever its direction") {

@@ -20,8 +20,10 @@ struct ContactFront {
   Vector3 centroid = Vector3::Zero();  ///< of that area, m; zero without contact
   Vector3 center = Vector3::Zero();    ///< of the area that the front encloses, pockets included, m
   double radius = 0.0;                 ///< mean of the front's radius r(θ) around the center, m
-  std::vector<double> modes;           ///< amplitude of cos/sin m θ in r(θ) over `radius`, m = 0 … (modes[0] = 1)
+  std::vector<double> modes;           ///< amplitudes a_m in r(θ)/radius = Σ a_m cos(m θ − φ_m), m = 0 … (a_0 = 1)
+  std::vector<double> phases;          ///< φ_m, rad, with θ from x (from y where `up` is along x)
   double modulation = 0.0;             ///< root mean square of r(θ)/radius − 1 in the modes m >= 2
+  std::vector<Vector3> outline;        ///< points of the front at equal angles around the center, m; empty without contact
 };
 
 /// The outer front r(θ_k), θ_k = 2π k/n, around a point: the outermost crossing of each of n rays with the segments of
@@ -136,6 +138,7 @@ namespace detail {
     for (std::size_t k = 0; k < 4; ++k) add_triangle(middle, c[k], c[(k + 1) % 4]);
   }
   front.modes.assign(static_cast<std::size_t>(modes) + 1, 0.0);
+  front.phases = front.modes;
   if (!(front.area > 0.0)) {
     front.area = 0.0;
     front.centroid.setZero();
@@ -159,25 +162,47 @@ namespace detail {
     if (r.empty()) return front;
   }
   front.center += (center[0] - start[0]) * e1 + (center[1] - start[1]) * e2;
-  auto amplitude = [&](int m) {
-    double a = 0.0, b = 0.0;
+  for (std::size_t k = 0; k < rays; ++k) {
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(rays);
+    front.outline.push_back(front.center + r[k] * (std::cos(angle) * e1 + std::sin(angle) * e2));
+  }
+  const auto coefficients = [&](std::size_t m) {  // of cos m θ and sin m θ
+    Point<2> c = Point<2>::Zero();
     for (std::size_t k = 0; k < rays; ++k) {
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(rays);
-      a += r[k] * std::cos(m * angle);
-      b += r[k] * std::sin(m * angle);
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(m * k % rays) / static_cast<double>(rays);
+      c += 2.0 / static_cast<double>(rays) * r[k] * Point<2>(std::cos(angle), std::sin(angle));
     }
-    return 2.0 * std::hypot(a, b) / static_cast<double>(rays);
+    return c;
   };
-  front.radius = 0.5 * amplitude(0);
+  front.radius = 0.5 * coefficients(0)[0];
   if (!(front.radius > 0.0)) return front;
   front.modes[0] = 1.0;
   double sum = 0.0;
-  for (int m = 1; m <= modes; ++m) {
-    front.modes[static_cast<std::size_t>(m)] = amplitude(m) / front.radius;
-    if (m >= 2) sum += 0.5 * front.modes[static_cast<std::size_t>(m)] * front.modes[static_cast<std::size_t>(m)];
+  for (std::size_t m = 1; m < front.modes.size(); ++m) {
+    const Point<2> c = coefficients(m) / front.radius;
+    front.modes[m] = c.norm();
+    front.phases[m] = std::atan2(c[1], c[0]);
+    if (m >= 2) sum += 0.5 * c.squaredNorm();
   }
   front.modulation = std::sqrt(sum);
   return front;
+}
+
+/// How far the front has come from the point `origin` in a direction: the mean distance of the points of its outline in the
+/// sector of ±`half_angle` around `direction` (both in the plane of the substrate), m; zero where there are none.
+[[nodiscard]] inline double front_radius(const ContactFront& front, const Vector3& origin, const Vector3& direction,
+                                         double half_angle = std::numbers::pi / 4.0,
+                                         const Vector3& up = Vector3::UnitZ()) {
+  const Vector3 axis = (direction - direction.dot(up) * up).normalized();
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Vector3& x : front.outline) {
+    const Vector3 arm = (x - origin) - (x - origin).dot(up) * up;
+    if (arm.dot(axis) < std::cos(half_angle) * arm.norm()) continue;
+    sum += arm.norm();
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
 }  // namespace tactoid
