@@ -20,6 +20,7 @@ struct SpreadingParameters {
   double substrate_height = 5e-6;   ///< m
   double gap = 200e-9;              ///< initial gap, m
   double resolution = 1.0;          ///< scales the numbers of cells in each direction; 1: 4341 + 16640 particles
+  double turn = 0.0;                ///< of both meshes around z, rad: what turns with it is the mesh's doing
 
   // Cell
   double density = 1000.0;  ///< of nucleus and cytoplasm, kg/m³
@@ -38,7 +39,6 @@ struct SpreadingParameters {
   bool anchoring = true;               ///< the director is held where the cell touches
 
   // Substrate
-  double stiffness = 10.0;         ///< factor on C₁, C₂, λ of the base: 2, 5, 10 are the paper's substrates I, II, III
   std::string preset = "printed";  ///< viscous constants: printed, viscous/10 or elastic
   double substrate_density = 1000.0;                                                  ///< kg/m³
   double substrate_c1 = 1.265e4, substrate_c2 = 1.012e3, substrate_lambda = 1.012e6;  ///< base, Pa
@@ -63,13 +63,12 @@ struct SpreadingParameters {
 
   void add_to(Options& options) {
     options.add_quantity("end-time", &end_time, Quantity::time, Range::positive(), "Simulated time");
-    options.add("stiffness", &stiffness, Range::positive(),
-                "Factor on the constants of the base substrate; 2, 5 and 10 are substrates I, II and III");
     options.add_choice("preset", &preset, {"printed", "viscous/10", "elastic"},
                        "Viscous constants of the substrate: as printed, a tenth, or none");
     options.add("nucleus", &nucleus, Range::inside(0.0, 1.0), "Radius of the nucleus over that of the cell");
     options.add("resolution", &resolution, Range::between(0.2, 10.0),
                 "Scales the numbers of cells in each direction; 1 is 4341 + 16640 particles");
+    options.add_quantity("turn", &turn, Quantity::angle, Range::any(), "Turns the particles of both bodies around z");
     options.add_quantity("radius", &radius, Quantity::length, Range::positive(), "Radius of the cell");
     options.add_quantity("substrate-radius", &substrate_radius, Quantity::length, Range::positive(),
                          "Radius of the substrate");
@@ -139,18 +138,25 @@ struct SpreadingParameters {
   [[nodiscard]] double rest_pressure() const { return 2.0 * surface_tension / radius; }
 
   [[nodiscard]] PointCloud<3> cell_cloud() const {
-    return ball({.radius = radius,
-                 .core_radius = nucleus * radius,
-                 .core_cells = count(10, 2),
-                 .shells = count(5, 1),
-                 .center = {0.0, 0.0, radius + gap}});
+    return turned(ball({.radius = radius,
+                        .core_radius = nucleus * radius,
+                        .core_cells = count(10, 2),
+                        .shells = count(5, 1),
+                        .center = {0.0, 0.0, radius + gap}}));
   }
   [[nodiscard]] PointCloud<3> substrate_cloud() const {
-    return disc({.radius = substrate_radius,
-                 .height = substrate_height,
-                 .core_cells = count(21, 2),
-                 .rings = count(19, 1),
-                 .layers = count(7, 1) + 1});
+    return turned(disc({.radius = substrate_radius,
+                        .height = substrate_height,
+                        .core_cells = count(21, 2),
+                        .rings = count(19, 1),
+                        .layers = count(7, 1) + 1}));
+  }
+
+  [[nodiscard]] PointCloud<3> turned(PointCloud<3> cloud) const {
+    if (turn == 0.0) return cloud;
+    for (Point<3>& X : cloud.positions)
+      X.head<2>() = Point<2>(std::cos(turn) * X[0] - std::sin(turn) * X[1], std::sin(turn) * X[0] + std::cos(turn) * X[1]);
+    return cloud;
   }
 
   [[nodiscard]] ModifiedMooneyRivlin nucleus_law() const {
@@ -168,7 +174,7 @@ struct SpreadingParameters {
             .director_elasticity = director_elasticity,
             .activity = activity};
   }
-  /// The substrate with its constants times `factor`.
+  /// The substrate with C₁, C₂, λ of the base times `factor`: 2, 5 and 10 are the paper's substrates I, II and III.
   [[nodiscard]] YangVisco<> substrate_law(double factor) const {
     const double viscous = preset == "elastic" ? 0.0 : preset == "viscous/10" ? 0.1 : 1.0;
     const ModifiedMooneyRivlin base{

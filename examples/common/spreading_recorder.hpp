@@ -15,8 +15,8 @@
 
 namespace tactoid {
 
-/// Observes a simulation of a cell (body 0) on a substrate (body 1) and writes, in a folder, history.csv, the frames
-/// for ParaView (fields.pvd) and summary.json.
+/// Observes a simulation of a cell (body 0) on a substrate (body 1) and writes, in a folder, history.csv, front.csv (the
+/// shape of the front), the frames for ParaView (fields.pvd) and summary.json.
 class SpreadingRecorder {
  public:
   /// `cutoff`: gap below which the surface counts as spread, m.
@@ -24,6 +24,7 @@ class SpreadingRecorder {
       : folder_(std::move(folder)),
         cutoff_(cutoff),
         history_(folder_ / "history.csv", columns()),
+        front_(folder_ / "front.csv", front_columns()),
         series_(folder_ / "fields.pvd") {
     prepare_folder(folder_ / "fields");
     remove_old_frames();
@@ -54,10 +55,20 @@ class SpreadingRecorder {
             "momentum_y",
             "momentum_z",
             "stabilization_energy",
-            "gap_min"};
+            "gap_min",
+            "front_plus_x",
+            "front_minus_x"};
   }
 
-  /// One line of the history.
+  /// The front is r(θ) = radius (1 + Σ mode_m cos(m θ − phase_m)) around its center.
+  static std::vector<std::string> front_columns() {
+    std::vector<std::string> names = {"time", "center_x", "center_y", "radius"};
+    for (int m = 1; m <= front_modes; ++m) names.push_back(fmt::format("mode_{}", m));
+    for (int m = 1; m <= front_modes; ++m) names.push_back(fmt::format("phase_{}", m));
+    return names;
+  }
+
+  /// One line of the histories.
   template <class S>
   void record(S& simulation) {
     if (!last_.empty() && last_.front() == simulation.time()) return;
@@ -69,7 +80,7 @@ class SpreadingRecorder {
     const RegionStatistics nucleus = region_statistics(table, stress.point_effective_stress, 0);
     double largest = 0.0;
     for (double s : stress.point_effective_stress) largest = std::max(largest, s);
-    const ContactFront front = contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_);
+    const ContactFront front = contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_, Vector3::UnitZ(), front_modes);
     const Motion a = motion<0>(simulation), b = motion<1>(simulation);
     const Vector3 momentum = a.momentum + b.momentum;
     const EnergyLedger& e = simulation.ledger();
@@ -99,8 +110,14 @@ class SpreadingRecorder {
              momentum[1],
              momentum[2],
              e.stabilization,
-             smallest};
+             smallest,
+             front_radius(front, Vector3::Zero(), Vector3::UnitX()),
+             front_radius(front, Vector3::Zero(), -Vector3::UnitX())};
     history_.write(last_);
+    std::vector<double> shape = {simulation.time(), front.center[0], front.center[1], front.radius};
+    shape.insert(shape.end(), front.modes.begin() + 1, front.modes.end());
+    shape.insert(shape.end(), front.phases.begin() + 1, front.phases.end());
+    front_.write(shape);
   }
 
   /// One frame: both bodies.
@@ -171,9 +188,10 @@ class SpreadingRecorder {
     series_.add(simulation.time(), "fields/" + name, body.name());
   }
 
+  static constexpr int front_modes = 16;
   std::filesystem::path folder_;
   double cutoff_;
-  HistoryWriter history_;
+  HistoryWriter history_, front_;
   PvdSeries series_;
   SurfaceGaps<3> gaps_;
   std::vector<double> last_;

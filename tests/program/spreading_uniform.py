@@ -74,7 +74,7 @@ class Results(Case):
         self.assertNotIn("\r", result.stdout)
         out = self.folder / "new/folder"
         self.assertEqual(
-            sorted(os.listdir(out)), ["fields", "fields.pvd", "history.csv", "parameters.toml", "summary.json"]
+            sorted(os.listdir(out)), ["fields", "fields.pvd", "front.csv", "history.csv", "parameters.toml", "summary.json"]
         )
         head, rows = read_history(out / "history.csv")
         self.assertEqual(head[: len(COLUMNS)], COLUMNS)

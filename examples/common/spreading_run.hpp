@@ -1,0 +1,102 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tactoid/tactoid.hpp>
+
+#include <common/options.hpp>
+#include <common/spreading_parameters.hpp>
+#include <common/spreading_recorder.hpp>
+
+namespace tactoid {
+
+/// A cell that spreads on a substrate, from its parameters to its results: what the spreading examples share.
+struct SpreadingRun {
+  std::string out;             ///< folder of the results
+  int threads = thread_count();
+  int frames = 20;             ///< for ParaView
+  int samples = 200;           ///< lines of the history
+  double energy_limit = 0.1;   ///< relative error of the energy balance that stops the run
+
+  void add_to(Options& options) {
+    options.add("out", &out, "Folder of the results");
+    options.add("threads", &threads, Range::between(1, 1024), "Threads");
+    options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
+    options.add("samples", &samples, Range::between(1, 1000000), "Lines of the history");
+    options.add("max-energy-error", &energy_limit, Range::positive(), "Relative energy error that stops the run");
+  }
+
+  /// Composes both bodies, the substrate of `substrate_law` (a law or Graded), and runs to p.end_time. Writes the
+  /// effective `options`, history, frames and summary in `out`; after a breakdown, which is thrown again, too.
+  template <MaterialSource Law>
+  void operator()(const SpreadingParameters& p, const Options& options, const Law& substrate_law) const {
+    set_thread_count(threads);
+    const auto start = std::chrono::steady_clock::now();
+    PointCloud<3> substrate_cloud = p.substrate_cloud();
+    const auto bottom =
+        select(substrate_cloud, [&](const Point<3>& X) { return X[2] < -p.substrate_height * (1.0 - 1e-9); });
+    PointCloud<3> cell_cloud = p.cell_cloud();
+    Field director = p.director_field(cell_cloud);
+
+    Body cell{"cell",
+              std::move(cell_cloud),
+              Rkpm<3>{.support = p.support},
+              p.quadrature(),
+              Materials{Region{"nucleus", p.nucleus_law()}, Region{"cytoplasm", p.cytoplasm_law()}},
+              DirectorField<>{.diffusivity = p.diffusivity, .core_size = p.core_size},
+              std::move(director)};
+    Body substrate{"substrate", std::move(substrate_cloud), Rkpm<3>{.support = p.support}, p.quadrature(),
+                   Materials{Region{"body", substrate_law}}};
+    Simulation simulation{
+        Bodies{std::move(cell), std::move(substrate)},
+        Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
+                 between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30})},
+        Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
+        CentralDifference{.safety = p.safety, .time_step = p.time_step}};
+
+    prepare_folder(out);
+    options.write_toml(std::filesystem::path(out) / "parameters.toml");
+    SpreadingRecorder recorder(out, p.bond_range);
+    Progress progress(p.end_time);
+    fmt::print("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {} threads\n",
+               simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
+               1e9 * simulation.largest_stable_time_step(), thread_count());
+    const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+    const double setup = seconds();
+    const auto watch_energy = [&](auto& s) {
+      const double error = s.ledger().error();
+      if (s.steps() < 100 || error <= energy_limit) return;  // at first there is little work to compare with
+      recorder.record(s);
+      recorder.write_frame(s);
+      throw ComputationError(fmt::format(
+          "The energy balance is off by {:.3g} % at t = {:.6g} s, and --max-energy-error allows {:.3g} %; likely causes are "
+          "too weak a stabilisation or too large a time step.",
+          100.0 * error, s.time(), 100.0 * energy_limit));
+    };
+    const auto finish = [&](bool completed) {
+      progress.finish();
+      recorder.write_summary(simulation, seconds() - setup, completed);
+    };
+    try {
+      simulation.run(p.end_time, every(p.end_time / samples, [&](auto& s) { recorder.record(s); }),
+                     every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
+                     every_steps(10, [&](auto& s) {
+                       progress.update(s.time(), s.steps());
+                       watch_energy(s);
+                     }));
+    } catch (const ComputationError&) {
+      finish(false);
+      throw;
+    }
+    finish(true);
+    fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps(),
+               seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);
+  }
+};
+
+}  // namespace tactoid
