@@ -1,0 +1,65 @@
+"""Claims 1 and 2 of the paper: do spreading area and stress in the nucleus depend on the stiffness of the substrate?"""
+
+import numpy as np
+import matplotlib.pyplot as plt
+
+from study_tools import KPA, UM, US, Case, number, percent, resolution, table
+
+TITLE = "Does the stiffness of the substrate matter? (Figs. 5 to 9, claims 1 and 2)"
+STIFFNESS = ["0.5", "1", "2", "5", "10", "20", "50"]
+PRESETS = ["elastic", "viscous/10", "printed"]
+RESOLUTIONS = [resolution(r) for r in (0.5, 0.7, 1.0, 1.4)]
+LADDER = [[("preset", p), ("stiffness", s)] for p in PRESETS for s in STIFFNESS]
+MESHES = [[("resolution", r), ("preset", p), ("stiffness", s)]
+          for r in RESOLUTIONS for p in ("elastic", "printed") for s in ("2", "10")]
+SWEEPS = [
+    ("ladder", "spreading_uniform", [("resolution", resolution(1)), ("end-time", "5us"), ("frames", "5")], LADDER),
+    ("meshes", "spreading_uniform", [("end-time", "2us"), ("frames", "1")], MESHES),
+]
+TIMES = [1e-6, 2e-6, 3e-6, 4.5e-6]
+QUANTITIES = [("spread_area", UM**2, "spreading area", "µm²"),
+              ("nucleus_effective_stress_mean", KPA, "mean effective stress in the nucleus", "kPa")]
+
+
+def ladder_figure(ladder):
+    figure, axes = plt.subplots(2, 3, figsize=(9.0, 5.0), sharex=True, sharey="row", layout="constrained")
+    for row, (name, _, label, _) in zip(axes, QUANTITIES):
+        for axis, preset in zip(row, PRESETS):
+            for time in TIMES:
+                values = [ladder[preset, s].at(name, time) for s in STIFFNESS]
+                axis.plot([float(s) for s in STIFFNESS], [percent(v, values[-1]) for v in values], "o-", markersize=3,
+                          label=f"{time * US:g} µs")
+            axis.set_xscale("log")
+            axis.set_title(f"{label}, {preset}")
+        row[0].set_ylabel("difference from stiffness 50 (%)")
+    axes[0, 0].legend()
+    for axis in axes[1]:
+        axis.set_xlabel("stiffness (of the base substrate)")
+    return figure
+
+
+def report(folder):
+    ladder = {(p, s): Case(folder / "ladder", [("preset", p), ("stiffness", s)]) for p in PRESETS for s in STIFFNESS}
+    text = "![Area and stress against stiffness](spreading_uniform/stiffness.png)\n\n"
+    for name, unit, label, unit_name in QUANTITIES:
+        text += f"**{label.capitalize()}**, {unit_name}, at stiffness 2 / 5 / 10 (substrates I, II, III), and the change from I to III:\n\n"
+        rows = []
+        for time in TIMES:
+            row = [f"{time * US:g} µs"]
+            for p in PRESETS:
+                values = [ladder[p, s].at(name, time) * unit for s in ("2", "5", "10")]
+                row.append(" / ".join(number(v, 5) for v in values) + f" ({percent(values[2], values[0]):+.2f} %)")
+            rows.append(row)
+        text += table(["time", *PRESETS], rows) + "\n"
+    text += ("**Meshes**: the change from stiffness 2 to stiffness 10 on one mesh, at four resolutions, and the spread of the "
+             "values themselves between the meshes (largest over smallest), at 2 µs:\n\n")
+    rows = []
+    for name, _, label, _ in QUANTITIES:
+        for p in ("elastic", "printed"):
+            value = {(r, s): Case(folder / "meshes", [("resolution", r), ("preset", p), ("stiffness", s)]).at(name, 2e-6)
+                     for r in RESOLUTIONS for s in ("2", "10")}
+            changes = [percent(value[r, "10"], value[r, "2"]) for r in RESOLUTIONS]
+            stiff = [value[r, "10"] for r in RESOLUTIONS]
+            rows.append([f"{label}, {p}", *(f"{c:+.2f} %" for c in changes), f"{percent(np.nanmax(stiff), np.nanmin(stiff)):.1f} %"])
+    text += table(["", *(f"resolution {r}" for r in RESOLUTIONS), "spread between meshes"], rows)
+    return text, {"stiffness": ladder_figure(ladder)}
