@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 
 #include <tactoid/boundary/body_force.hpp>
+#include <tactoid/boundary/on_facets.hpp>
+#include <tactoid/contact/on_rigid.hpp>
 #include <tactoid/geometry/all.hpp>
 #include <tactoid/integrator/all.hpp>
 #include <tactoid/kernel/all.hpp>
@@ -144,6 +146,41 @@ TEST_CASE("A hanging bar: displacement and reaction under its weight") {
   CHECK(body.displacement[end[0]][0] ==
         test::relative(0.5 * law.density * g * length * length / modulus).epsilon(5e-3));
   CHECK(problem.reaction(0)[0] == test::relative(-law.density * g * length).epsilon(1e-9));
+}
+
+TEST_CASE("A block under a rigid plate: Newton's method with the stiffness of the contact") {
+  // Gauss cells meet the uniform state approximately only.
+  const auto press = [](auto rule, double allowed) {
+    const double edge = 1e-6, depth = 0.3e-6, penalty = 1e4 * law.wave_speed() * law.wave_speed() * law.density / edge;
+    Body body{"block", rectangle({.size = {edge, edge}, .cells = {5, 5}}), Rkpm<2>{}, rule, Materials{Region{"body", law}}};
+    const auto at = [&](int k, double x) {
+      return select(body.cloud(), [=](const Point<2>& X) { return std::abs(X[k] - x) < 1e-9 * edge; });
+    };
+    // Held at its sides so that it shortens uniformly: P(λ) = k (penetration), known from the law alone.
+    auto sides = at(0, 0.0), right = at(0, edge);
+    sides.insert(sides.end(), right.begin(), right.end());
+    OnFacets plate{OnRigid<>{.law = {.penalty = penalty},
+                             .surface = {.point = {0.0, edge - depth, 0.0}, .normal = -Vector3::UnitY()}},
+                   [=](const Point<2>& X) { return X[1] > edge * (1.0 - 1e-9); }};
+    StaticProblem problem(body, {fixed(sides, {true, false, false}), fixed(at(1, 0.0), {false, true, false})}, plate);
+    const StaticReport report = StaticNewton{.max_iterations = 12}.solve(problem);
+    CHECK(report.residual < 1e-9);
+    const double force = problem.reaction(1)[1] / edge;  // of the floor: the plate pushes as much
+    CHECK(problem.term_energy().potential == test::relative(0.5 * force * force / penalty * edge).epsilon(30.0 * allowed));
+    Tensor3 F = Tensor3::Identity();
+    F(1, 1) = 1.0 - depth / edge + force / penalty / edge;
+    CHECK(force == test::relative(-law.first_piola(F)(1, 1)).epsilon(allowed));
+    CHECK(force > 0.0);
+    return report;
+  };
+  const StaticReport values = press(undamped(), 1e-8), coefficients = press(GaussCells<2>{}, 1e-3);
+  MESSAGE("iterations " << values.iterations << " and " << coefficients.iterations);
+  CHECK(values.iterations < 10);
+  CHECK(coefficients.iterations < 10);
+  // Nowhere: an error, not a term without effect.
+  Body body{"block", rectangle({.size = {1e-6, 1e-6}, .cells = {4, 4}}), Rkpm<2>{}, undamped(), Materials{Region{"body", law}}};
+  CHECK_THROWS_WITH_AS(StaticProblem(body, {}, OnFacets{OnRigid<>{}, [](const Point<2>&) { return false; }}),
+                       doctest::Contains("no facet of the body satisfies"), GeometryError);
 }
 
 TEST_CASE("Statics that cannot succeed say why") {

@@ -154,16 +154,6 @@ void tabor(Report& report, Level level) {
 
 // --- repulsion -------------------------------------------------------------------------------------------------------
 
-/// A term on the particles of a body that sees the facets of another cloud only.
-template <class Term>
-struct OnPart {
-  Term term;
-  PointCloud<3> part;
-  void initialize(const PointCloud<3>&, const ParticleFields& body) { term.initialize(part, body); }
-  TermEnergy apply(const ParticleFields& body, double time) { return term.apply(body, time); }
-  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const { return term.stiffness_rate(body); }
-};
-
 /// Slows all motion down, f = −r m v, to find what is at rest.
 struct Drag {
   double rate = 0.0;  ///< r, 1/s
@@ -192,12 +182,12 @@ struct Press {
 /// layer: it adds dU/dF to the depth, with its energy U ~ F^{4/3} under Hertz's pressure, so (4/3) U/F.
 [[nodiscard]] Press press(double depth, double core, int cells, double penalty) {
   auto body = octant_body(core, cells, 1.0 + 0.8 / cells);
-  PointCloud<3> part = on_sphere(body.cloud(), radius);
+  const auto is_on_sphere = [](const Point<3>& X) { return std::abs(X.norm() - radius) < 1e-9 * radius; };
   const auto plane = [&](int k) { return select(body.cloud(), [k](const Point<3>& X) { return X[k] == 0.0; }); };
   const auto x = plane(0), y = plane(1), z = plane(2);
   const double transit = radius / std::sqrt(young / 1000.0), ramp = 3.0 * transit, end = 8.0 * transit;
   // The library asks the wall for its stiffness every 20 steps only: first touches in between need a cap of the step.
-  const FacetSurface<3> surface(part);
+  const FacetSurface<3> surface(on_sphere(body.cloud(), radius));
   double rate = 0.0;
   for (const Index i : surface.nodes) rate = std::max(rate, penalty * surface.nodal_area[i] / body.masses()[i]);
   const auto path = [=](double t) {
@@ -212,7 +202,7 @@ struct Press {
   OnRigid<RepulsiveWall, Moving<RigidPlane>> wall{
       .law = {.penalty = penalty}, .surface = {plate, path, speed}, .points_per_direction = 3};
   Simulation simulation{Bodies{std::move(body)}, Contacts{},
-                        Boundaries{on<0>(OnPart<decltype(wall)>{std::move(wall), std::move(part)}),
+                        Boundaries{on<0>(OnFacets{std::move(wall), is_on_sphere}),
                                    on<0>(Drag{.rate = 2.0 / transit}), on<0>(fixed(x, {true, false, false})),
                                    on<0>(fixed(y, {false, true, false})), on<0>(fixed(z, {false, false, true}))},
                         CentralDifference{.max_time_step = 1.0 / std::sqrt(rate)}};

@@ -4,6 +4,7 @@
 #include <tactoid/boundary/boundary.hpp>
 #include <tactoid/boundary/curvature_surface_tension.hpp>
 #include <tactoid/boundary/essential_conditions.hpp>
+#include <tactoid/boundary/on_facets.hpp>
 #include <tactoid/boundary/prescribed_motion.hpp>
 #include <tactoid/boundary/pressure.hpp>
 #include <tactoid/boundary/surface_tension.hpp>

@@ -2,6 +2,7 @@
 
 #include <concepts>
 
+#include <tactoid/core/tensor.hpp>
 #include <tactoid/core/unsatisfied.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
@@ -24,5 +25,12 @@ concept BoundaryTerm =
     (requires(const B& b, const ParticleFields& body) {
       { b.stiffness_rate(body) } -> std::convertible_to<double>;
     } || unsatisfied<"A BoundaryTerm has `double stiffness_rate(const ParticleFields& body) const` (1/s^2).">);
+
+/// A BoundaryTerm that knows its stiffness, with which static solutions converge fast: `add_stiffness(body, emit)` calls
+/// emit(i, j, K) with K = −∂f_i/∂x_j (3 × 3, N/m) for pairs of particles, at the state of the last call of `apply`; the
+/// contributions to a pair add up.
+template <class B>
+concept TermWithStiffness = requires(const B& b, const ParticleFields& body,
+                                     void (*emit)(Index i, Index j, const Tensor3& stiffness)) { b.add_stiffness(body, emit); };
 
 }  // namespace tactoid

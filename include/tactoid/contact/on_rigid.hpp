@@ -32,8 +32,8 @@ class RigidPass {
       const Vector4 x = surface_.interpolate(f, quadrature_.point(q).local, body.position);
       const RigidGap g = rigid.at(x.template head<3>(), time);
       const double area = quadrature_.area[q], pressure = area * law.traction(g.gap);
-      states_[q] = {pad(Vector3(pressure * g.normal)), area * law.potential(g.gap), pressure * g.normal.dot(g.velocity),
-                    area * law.stiffness(g.gap)};
+      states_[q] = {pad(Vector3(pressure * g.normal)), g.normal, area * law.potential(g.gap),
+                    pressure * g.normal.dot(g.velocity), area * law.stiffness(g.gap)};
     });
     on_surface.setZero();
     TermEnergy total;
@@ -58,9 +58,24 @@ class RigidPass {
     return rate;
   }
 
+  /// Calls emit(i, j, K), K = −∂f_i/∂x_j in the normal direction; the turn of the normal of a curved surface is left out.
+  template <class Emit>
+  void add_stiffness(const Emit& emit) const {
+    for (std::size_t q = 0; q < states_.size(); ++q) {
+      const State& s = states_[q];
+      if (s.stiffness == 0.0) continue;
+      const auto& nodes = surface_.facets[quadrature_.facet_of(q)];
+      const auto& shape = quadrature_.point(q).shape;
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        for (std::size_t b = 0; b < nodes.size(); ++b)
+          emit(nodes[a], nodes[b], Tensor3((s.stiffness * shape[a] * shape[b]) * s.normal * s.normal.transpose()));
+    }
+  }
+
  private:
   struct State {
     Vector4 force = Vector4::Zero();
+    Vector3 normal = Vector3::Zero();
     double energy = 0.0, power = 0.0, stiffness = 0.0;
   };
   FacetSurface<D> surface_;
@@ -77,6 +92,7 @@ struct OnRigid {
   int points_per_direction = 2;          ///< Gauss points along each side of a facet, 1 to 4
   PerDimension<RigidPass> pass{};        ///< set by initialize()
   Vector3 on_surface = Vector3::Zero();  ///< see force()
+  double stored = 0.0;                   ///< see energy()
 
   void validate() const {
     law.validate();
@@ -89,14 +105,24 @@ struct OnRigid {
     pass.emplace<D>().initialize(cloud, body, points_per_direction);
   }
   TermEnergy apply(const ParticleFields& body, double time) {
-    return pass.visit([&](auto& p) { return p.apply(law, surface, body, time, on_surface); });
+    const TermEnergy energy = pass.visit([&](auto& p) { return p.apply(law, surface, body, time, on_surface); });
+    stored = energy.potential;
+    return energy;
   }
   /// At the gaps of the last call of apply.
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
     return pass.visit([&](const auto& p) { return p.stiffness_rate(body); });
   }
+  /// At the gaps of the last call of apply: that of a law that only repels. Attraction softens with the distance; here it
+  /// counts as if it stiffened, which keeps the matrix of a static solution positive.
+  template <class Emit>
+  void add_stiffness(const ParticleFields&, const Emit& emit) const {
+    pass.visit([&](const auto& p) { p.add_stiffness(emit); });
+  }
   /// Force of the body on the rigid surface at the last call of apply, N.
   [[nodiscard]] Vector3 force() const { return on_surface; }
+  /// Energy between body and surface at that call, J.
+  [[nodiscard]] double energy() const { return stored; }
 };
 
 /// A rigid plate, at rest or moving steadily, that a body is pressed or stuck to: a BoundaryTerm in 2 and 3 dimensions.
@@ -125,6 +151,10 @@ struct RigidPlate {
   }
   TermEnergy apply(const ParticleFields& body, double time) { return contact.apply(body, time); }
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const { return contact.stiffness_rate(body); }
+  template <class Emit>
+  void add_stiffness(const ParticleFields& body, const Emit& emit) const {
+    contact.add_stiffness(body, emit);
+  }
   /// Force of the body on the plate at the last call of apply, N.
   [[nodiscard]] Vector3 force() const { return contact.force(); }
 };

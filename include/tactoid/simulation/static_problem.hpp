@@ -21,8 +21,9 @@ namespace tactoid {
 ///   problem.reaction(1);
 ///
 /// Works on the body's displacement; the velocity is set to zero. Prescribed displacements grow linearly from the
-/// present ones to their values at `time` 0, the forces of the terms linearly from zero. Terms are dead loads for the
-/// tangent: those that follow the deformation (pressure, surface tension) converge too, but not quadratically.
+/// present ones to their values at `time` 0, the forces of the terms linearly from zero. A term that has a stiffness
+/// (TermWithStiffness: rigid surfaces) adds it to the tangent; the others are dead loads for it: those that follow the
+/// deformation (pressure, surface tension) converge too, but not quadratically.
 /// Components beyond the dimension of the body are no unknowns. The body must outlive the problem.
 template <class Body, class... Terms>
 class StaticProblem {
@@ -80,7 +81,11 @@ class StaticProblem {
   [[nodiscard]] const Eigen::VectorXd& forces() const { return forces_; }
   [[nodiscard]] double force_scale() const { return force_scale_; }
   [[nodiscard]] double length() const { return length_; }
-  [[nodiscard]] StiffnessMatrix stiffness() const { return assemble_stiffness(body_); }
+  [[nodiscard]] StiffnessMatrix stiffness() {
+    StiffnessMatrix K = assemble_stiffness(body_);
+    if constexpr ((TermWithStiffness<Terms> || ...)) K += term_stiffness();
+    return K;
+  }
   [[nodiscard]] const StiffnessMatrix& conditions() const { return conditions_; }
   [[nodiscard]] bool conditions_are_values() const { return body_.particle_values().identity(); }
   [[nodiscard]] Eigen::VectorXd defect() const { return defect_target_ - conditions_ * unknowns(); }
@@ -100,6 +105,34 @@ class StaticProblem {
   template <class Term>
   void add_term(Term& term) {
     term_energy_ += term.apply(fields_.view(), 0.0);
+  }
+
+  /// Stiffness of the terms in the unknowns: of the particles, and Nᵀ K N where the unknowns are coefficients, u = N a.
+  [[nodiscard]] StiffnessMatrix term_stiffness() {
+    const auto n = static_cast<Eigen::Index>(dimension * body_.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto emit = [&](Index i, Index j, const Tensor3& k) {
+      for (int r = 0; r < dimension; ++r)
+        for (int c = 0; c < dimension; ++c)
+          entries.emplace_back(dimension * static_cast<int>(i) + r, dimension * static_cast<int>(j) + c, fraction_ * k(r, c));
+    };
+    const auto add = [&](const auto& term) {
+      if constexpr (TermWithStiffness<std::decay_t<decltype(term)>>) term.add_stiffness(fields_.view(), emit);
+    };
+    std::apply([&](const auto&... term) { (add(term), ...); }, terms_);
+    StiffnessMatrix K(n, n);
+    K.setFromTriplets(entries.begin(), entries.end());
+    const ParticleValues& map = body_.particle_values();
+    if (map.identity()) return K;
+    entries.clear();
+    const ValueRows& rows = map.rows();
+    for (std::size_t i = 0; i < body_.size(); ++i)
+      for (std::size_t e = rows.offsets[i]; e < rows.offsets[i + 1]; ++e)
+        for (int c = 0; c < dimension; ++c)
+          entries.emplace_back(dimension * static_cast<int>(i) + c, dimension * static_cast<int>(rows.particles[e]) + c, rows.values[e]);
+    StiffnessMatrix N(n, n);
+    N.setFromTriplets(entries.begin(), entries.end());
+    return N.transpose() * K * N;
   }
 
   [[nodiscard]] Eigen::VectorXd unknowns() const { return flat(body_.displacement); }
