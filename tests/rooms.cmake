@@ -1,7 +1,7 @@
 # The rooms of include/tactoid in the order in which data flows: a room includes only rooms above it.
 # cmake -D ROOT=<folder of the project> -P rooms.cmake
 cmake_minimum_required(VERSION 3.25)
-set(rooms core geometry neighbors kernel quadrature kinematics material director contact boundary integrator simulation
+set(rooms core geometry neighbors input kernel quadrature kinematics material director contact boundary integrator simulation
           observe output verify)
 set(rooms_with_fmt simulation integrator observe output verify) # elsewhere texts are made by core/errors.hpp
 set(errors "")

@@ -7,6 +7,7 @@
 #include <tactoid/core/core.hpp>
 #include <tactoid/director/all.hpp>
 #include <tactoid/geometry/all.hpp>
+#include <tactoid/input/all.hpp>
 #include <tactoid/integrator/all.hpp>
 #include <tactoid/kernel/all.hpp>
 #include <tactoid/kinematics/all.hpp>

@@ -1,0 +1,71 @@
+// A body from a mesh of your own: an elastic cell of any shape falls on a rigid plate. See README.md beside this file.
+//
+//   gmsh -3 -format msh41 examples/own_mesh/cell.geo -o cell.msh
+//   own_mesh --mesh cell.msh --out out/own_mesh
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include <tactoid/tactoid.hpp>
+
+#include "common/options.hpp"
+#include "common/program.hpp"
+
+int main(int argc, char** argv) {
+  using namespace tactoid;
+  return run_program("own_mesh", [&] {
+    std::string mesh = "cell.msh", out = "out/own_mesh";
+    double scale = 1e-6, nucleus = 15e3, cytoplasm = 1.5e3, poisson = 0.45, speed = 0.3, end_time = 20e-6;
+    int threads = thread_count(), frames = 20;
+    Options options("own_mesh", "A body from a mesh of Gmsh, with the regions nucleus and cytoplasm, falls on a rigid plate.");
+    options.add("mesh", &mesh, "MSH 4.1 file: hexahedra or tetrahedra, physical volumes nucleus and cytoplasm");
+    options.add_quantity("scale", &scale, Quantity::length, Range::positive(), "The unit of length of the file");
+    options.add_quantity("nucleus", &nucleus, Quantity::pressure, Range::positive(), "Young's modulus of the nucleus");
+    options.add_quantity("cytoplasm", &cytoplasm, Quantity::pressure, Range::positive(), "Young's modulus of the cytoplasm");
+    options.add("poisson", &poisson, Range::inside(0.0, 0.5), "Poisson's ratio of both");
+    options.add_quantity("speed", &speed, Quantity::velocity, Range::non_negative(), "Speed of the fall");
+    options.add_quantity("end-time", &end_time, Quantity::time, Range::positive(), "Simulated time");
+    options.add("out", &out, "Folder of the results");
+    options.add("threads", &threads, Range::between(1, 1024), "Threads");
+    options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
+    if (!options.parse(argc, argv)) return 0;
+    set_thread_count(threads);
+
+    PointCloud<3> cloud = read_gmsh<3>(mesh, {.scale = scale});
+    fmt::print("{}: {} particles, {} cells, {} facets, volume {:.4g} m^3\n", mesh, cloud.size(), cloud.cells.size(), cloud.facets.size(),
+               volume(cloud));
+    double bottom = cloud.positions.front()[2];
+    for (const Point<3>& X : cloud.positions) bottom = std::min(bottom, X[2]);
+
+    // A mesh of tetrahedra has its particles nearer to each other than its edges are long: a smaller support is enough.
+    Body cell{"cell", std::move(cloud), Rkpm<3>{.support = 1.5}, NodalCentroids{},
+              Materials{Region{"nucleus", NeoHookean::from_young(nucleus, poisson)},
+                        Region{"cytoplasm", NeoHookean::from_young(cytoplasm, poisson)}}};
+    std::fill(cell.velocity.begin(), cell.velocity.end(), Vector4(0.0, 0.0, -speed, 0.0));
+    Simulation simulation{Bodies{std::move(cell)}, Contacts{},
+                          Boundaries{on<0>(RigidPlate{.point = {0.0, 0.0, bottom - 0.05 * scale}, .law = RepulsiveWall{.penalty = 1e12}})},
+                          CentralDifference{.safety = 0.5}};
+
+    const std::filesystem::path folder = out;
+    prepare_folder(folder / "fields");
+    options.write_toml(folder / "parameters.toml");
+    HistoryWriter history(folder / "history.csv", {"time", "height", "force", "kinetic_energy", "strain_energy", "energy_error"});
+    PvdSeries series(folder / "fields.pvd");
+    int frame = 0;
+    simulation.run(end_time, every(end_time / 200, [&](auto& s) {
+                     const EnergyLedger& e = s.ledger();
+                     history.write(std::array{s.time(), motion(s.template particles<0>()).center_of_mass[2] - bottom,
+                                              -s.template boundary<0>().force().z(), e.kinetic, e.strain + e.stabilization, e.error()});
+                   }),
+                   every(end_time / frames, [&](auto& s) {
+                     auto& body = s.template body<0>();
+                     const std::string name = fmt::format("fields/cell_{:04d}.vtu", frame++);
+                     write_body_frame(folder / name, body, s.template particles<0>(), stress_fields(body), s.time());
+                     series.add(s.time(), name, body.name());
+                   }));
+    fmt::print("{} steps, energy error {:.2g} %; results in {}\n", simulation.steps(), 100.0 * simulation.ledger().error(), out);
+    return 0;
+  });
+}

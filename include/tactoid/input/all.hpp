@@ -1,0 +1,4 @@
+#pragma once
+
+#include <tactoid/input/gmsh.hpp>
+#include <tactoid/input/mesh.hpp>

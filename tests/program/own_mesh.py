@@ -1,0 +1,72 @@
+"""The program own_mesh with a mesh that the test writes; meshes that are refused.
+
+    python3 own_mesh.py PROGRAM [name of a test ...]
+"""
+
+import csv
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = ""
+
+
+def block(n, second="cytoplasm"):
+    """MSH 4.1: a cube of n^3 hexahedra of side 1, its lower half the nucleus."""
+    m, lines = n + 1, ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", "2", '3 1 "nucleus"', f'3 2 "{second}"',
+                       "$EndPhysicalNames", "$Entities", "0 0 0 2", "1 0 0 0 1 1 1 1 1 0", "2 0 0 0 1 1 1 1 2 0", "$EndEntities"]
+    lines += ["$Nodes", f"1 {m**3} 1 {m**3}", f"3 1 0 {m**3}", *map(str, range(1, m**3 + 1))]
+    lines += [f"{i / n} {j / n} {k / n}" for k in range(m) for j in range(m) for i in range(m)]
+    lines += ["$EndNodes", "$Elements", f"2 {n**3} 1 {n**3}"]
+    tag = 0
+    for entity, layers in ((1, range(n // 2)), (2, range(n // 2, n))):
+        lines.append(f"3 {entity} 5 {len(layers) * n * n}")
+        for k in layers:
+            for j in range(n):
+                for i in range(n):
+                    tag += 1
+                    corner = [1 + i + a + m * (j + b + m * (k + c)) for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+                    lines.append(" ".join(map(str, [tag, *corner])))
+    return "\n".join([*lines, "$EndElements", ""])
+
+
+class OwnMesh(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="own_mesh_"))
+        self.addCleanup(shutil.rmtree, self.folder, True)
+
+    def run_program(self, text, *arguments, status=0):
+        (self.folder / "body.msh").write_text(text)
+        result = subprocess.run([PROGRAM, "--mesh", "body.msh", "--threads", "1", "--out", "out", *arguments], cwd=self.folder,
+                                capture_output=True, text=True, timeout=300, env=dict(os.environ, OMP_WAIT_POLICY="passive"))
+        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+        return result
+
+    def test_a_block_falls_and_comes_back(self):
+        result = self.run_program(block(4), "--scale", "5um", "--speed", "0.05m/s", "--end-time", "12us", "--frames", "2")
+        self.assertIn("125 particles, 64 cells, 96 facets, volume 1.25e-16 m^3", result.stdout)
+        with open(self.folder / "out" / "history.csv", newline="") as file:
+            rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+        self.assertGreater(max(row["force"] for row in rows), 0.0)
+        self.assertLess(rows[-1]["energy_error"], 0.01)
+        self.assertEqual(len(os.listdir(self.folder / "out" / "fields")), 3)
+
+    def test_bad_meshes_are_refused(self):
+        for text, says in (
+            (block(4, "shell"), 'region "shell" of the cloud has no material'),
+            (block(4).replace("4.1 0 8", "2.2 0 8"), "MSH version 2.2 is not read"),
+            (block(4)[:900], "body.msh"),
+        ):
+            result = self.run_program(text, status=2)
+            self.assertIn(says, result.stderr)
+            self.assertEqual(len(result.stderr.strip().splitlines()), 1)
+            self.assertFalse((self.folder / "out").exists())
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
