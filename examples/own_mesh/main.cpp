@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
                         Region{"cytoplasm", NeoHookean::from_young(cytoplasm, poisson)}}};
     std::fill(cell.velocity.begin(), cell.velocity.end(), Vector4(0.0, 0.0, -speed, 0.0));
     Simulation simulation{Bodies{std::move(cell)}, Contacts{},
-                          Boundaries{on<0>(RigidPlate{.point = {0.0, 0.0, bottom - 0.05 * scale}, .law = RepulsiveWall{.penalty = 1e12}})},
+                          Boundaries{on<0>(RigidPlate{.point = {0.0, 0.0, bottom - 0.05 * scale}, .law = RepulsiveWall{.penalty = 1e11}})},
                           CentralDifference{.safety = 0.5}};
 
     const std::filesystem::path folder = out;

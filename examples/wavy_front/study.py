@@ -20,7 +20,7 @@ CASES = [
     case("-1kPa", mesh=0.7), case("-1kPa", mesh=1.4),
     case("-5kPa"), case("-5kPa", "uniform"),
 ]
-SWEEPS = [("front", "spreading_uniform", [("stiffness", "10"), ("end-time", "5us"), ("frames", "5")], CASES)]
+SWEEPS = [("front", "spreading_uniform", [("stiffness", "10"), ("end-time", "4.5us"), ("frames", "3")], CASES)]
 TIME = 4.5e-6
 MODES = range(2, 17)
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <tactoid/contact/gap_law.hpp>
@@ -27,13 +28,23 @@ class RigidPass {
   /// Adds the forces on the body; `on_surface` becomes the total force on the rigid surface.
   template <GapLaw Law, RigidSurface Surface>
   TermEnergy apply(const Law& law, const Surface& rigid, const ParticleFields& body, double time, Vector3& on_surface) {
+    // The next step must be short enough for what a point meets in it: the stiffness at the gap of two steps ahead.
+    const double ahead = 2.0 * std::max(0.0, time - last_time_);
+    last_time_ = time;
     parallel_for(states_.size(), [&](std::size_t q) {
       const Index f = quadrature_.facet_of(q);
-      const Vector4 x = surface_.interpolate(f, quadrature_.point(q).local, body.position);
+      const auto& local = quadrature_.point(q).local;
+      const Vector4 x = surface_.interpolate(f, local, body.position);
       const RigidGap g = rigid.at(x.template head<3>(), time);
+      double stiffness = law.stiffness(g.gap);
+      if (ahead > 0.0) {
+        const Vector4 v = surface_.interpolate(f, local, body.velocity);
+        const double closing = g.normal.dot(g.velocity - v.template head<3>());
+        if (closing > 0.0) stiffness = std::max(stiffness, law.stiffness(g.gap - ahead * closing));
+      }
       const double area = quadrature_.area[q], pressure = area * law.traction(g.gap);
       states_[q] = {pad(Vector3(pressure * g.normal)), g.normal, area * law.potential(g.gap),
-                    pressure * g.normal.dot(g.velocity), area * law.stiffness(g.gap)};
+                    pressure * g.normal.dot(g.velocity), area * stiffness};
     });
     on_surface.setZero();
     TermEnergy total;
@@ -81,6 +92,7 @@ class RigidPass {
   FacetSurface<D> surface_;
   FacetQuadrature<D> quadrature_;
   std::vector<State> states_;
+  double last_time_ = std::numeric_limits<double>::infinity();
 };
 
 /// Contact of a body with a rigid surface under any GapLaw (per reference area), a BoundaryTerm in 2 and 3 dimensions:

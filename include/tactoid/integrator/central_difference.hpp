@@ -39,6 +39,8 @@ struct CentralDifference {
   void step(System& system, double until) const {
     const double stable = system.largest_stable_time_step();
     double dt = time_step > 0.0 ? time_step : std::min(safety * stable, max_time_step);
+    // Contacts look two steps ahead for what limits the next one: it may not be longer than that.
+    if (time_step == 0.0 && system.last_time_step() > 0.0) dt = std::min(dt, 2.0 * system.last_time_step());
     if (!(dt >= min_time_step) || dt > stable)
       throw ComputationError(fmt::format(
           "The stable time step at t = {:.6g} s is {:.3g} s, {}: a region is compressed or sheared too far, or a contact is too stiff.",
