@@ -11,6 +11,7 @@ import argparse
 import importlib.util
 import os
 import pathlib
+import signal
 import sys
 
 sys.dont_write_bytecode = True
@@ -60,6 +61,7 @@ def main():
     parser.add_argument("--publish", action="store_true", help="write page and figures into examples/")
     parser.add_argument("--retry", action="store_true", help="run again what failed before")
     given = parser.parse_args()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends the runs as Ctrl-C does
     if given.publish and (given.only or given.scale != 1.0):
         raise InputError("--publish needs all studies at their own resolutions: no --only, no --scale.")
     if not 0.0 < given.scale <= 10.0 or given.jobs < 1:
