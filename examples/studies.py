@@ -32,6 +32,16 @@ Written by `/usr/bin/python3 examples/studies.py --publish` from the files of it
 minutes. Every study has its folder, with its question, its commands and the comparison with the paper
 (X. Zeng and S. Li, *Soft Matter* 2012, **8**, 5765). Where a result depends on a parameter that the paper does not give, the page of
 [spreading_uniform](spreading_uniform/README.md) says which and why.
+
+| what the paper shows | here | |
+|---|---|---|
+| loops of a bar that close to a line at low frequency (Fig. 3) | reproduced, without inertia | the loss is the exact one; the loops of the figure need about a hundred times the viscosity of cytosol |
+| a cell between plates (Fig. 4) | computed, in part | the gel carries what its surface and its viscosity hold: at rest a few nN; runs with the large nucleus end where the gel over it is squeezed out |
+| 1. the stress in the nucleus depends on the stiffness of the substrate | yes, by a few per cent, early, on elastic substrates | by 0.1 to 0.3 % with the printed viscous constants; it saturates with stiffness |
+| 2. so does the spreading area | yes, early, on elastic substrates; no size can be given | the change differs between meshes by more than itself; 0.3 % and less with the printed constants |
+| 3. the front becomes wavy | not with the small active stress of the paper (−1 Pa): those waves are the mesh's | with −1 kPa and a director that varies in space: 4 to 5 % of the radius, the same waves on turned and finer meshes |
+| 4. the cell goes to the stiff side (Figs. 11, 12) | no | the front leads on either side in turn, by 0.4 % of its radius at most; the centre of mass moves a few nm to the soft side |
+| the axisymmetric model (Fig. 10) | not computed | |
 """
 
 

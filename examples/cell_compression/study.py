@@ -47,8 +47,14 @@ def report(folder):
     text = "![Force against reduction](cell_compression/compression.png)\n\n"
     text += ("Elastic balls: force on a plate (nN) by equilibria, and the difference of an explicit run of 400 µs (mean over ±0.01 of "
              "the reduction):\n\n")
-    rows = [[name, *(f"{number(force(static[name], r) * 1e9, 4)} ({percent(force(explicit[name], r, 0.01), force(static[name], r, 0.01)):+.1f} %)"
-                     for r in REDUCTIONS)] for name in static]
+
+    def compared(name, r):
+        if np.isnan(force(static[name], r)):
+            return "–"
+        difference = percent(force(explicit[name], r, 0.01), force(static[name], r, 0.01))
+        return f"{number(force(static[name], r) * 1e9, 4)} ({difference:+.1f} %)"
+
+    rows = [[name, *(compared(name, r) for r in REDUCTIONS)] for name in static]
     text += table(["reduction", *(f"{r:g}" for r in REDUCTIONS)], rows)
     text += ("\nThe cell: force on a plate (nN) at several durations of the motion, and extrapolated to infinitely slow motion "
              "(linear in the rate, from the two slowest):\n\n")

@@ -24,7 +24,7 @@ QUANTITIES = [("spread_area", UM**2, "spreading area", "µm²"),
 
 def ladder_figure(ladder):
     figure, axes = plt.subplots(2, 3, figsize=(9.0, 5.0), sharex=True, sharey="row", layout="constrained")
-    for row, (name, _, label, _) in zip(axes, QUANTITIES):
+    for row, (name, _, _, _), label in zip(axes, QUANTITIES, ("area", "stress in the nucleus")):
         for axis, preset in zip(row, PRESETS):
             for time in TIMES:
                 ten = ladder[preset, "10"].at(name, time)
@@ -32,8 +32,9 @@ def ladder_figure(ladder):
                           [percent(ladder[preset, s].at(name, time), ten) for s in STIFFNESS[preset]], "o-", markersize=3,
                           label=f"{time * US:g} µs")
             axis.set_xscale("log")
-            axis.set_title(f"{label}, {preset}")
-        row[0].set_ylabel("difference from stiffness 10 (%)")
+        row[0].set_ylabel(f"{label}: difference\nfrom stiffness 10 (%)")
+    for axis, preset in zip(axes[0], PRESETS):
+        axis.set_title(preset)
     axes[0, 0].legend()
     for axis in axes[1]:
         axis.set_xlabel("stiffness (of the base substrate)")

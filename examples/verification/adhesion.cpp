@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 
+#include <tactoid/boundary/on_facets.hpp>
 #include <tactoid/contact/ligand_receptor.hpp>
 #include <tactoid/contact/repulsive_wall.hpp>
 #include <tactoid/geometry/ball.hpp>

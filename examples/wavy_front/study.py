@@ -25,9 +25,13 @@ TIME = 4.5e-6
 MODES = range(2, 17)
 
 
+def spelled(activity):
+    return "ζ = " + activity.replace("-", "−").replace("kPa", " kPa").replace("0Pa", "0").replace("1Pa", "1 Pa")
+
+
 def label(options):
     o = dict(options)
-    text = f"ζ = {o['activity'].replace('-', '−')}, {o['director']}"
+    text = f"{spelled(o['activity'])}, {o['director']}"
     if o["director"] == "random":
         text += f" {o['seed']}"
     if o["turn"] != "0deg":
@@ -76,7 +80,7 @@ def report(folder):
         return f"{likeness(spectra[label(a)], spectra[label(b)], angle):+.2f}"
 
     third = np.pi / 6.0
-    rows = [[f"ζ = {z}".replace("-", "−"), pair(case(z, d), case(z, d, turn="30deg")),
+    rows = [[spelled(z), pair(case(z, d), case(z, d, turn="30deg")),
              pair(case(z, d, turn="30deg"), case(z, d), third), *others]
             for z, d, others in (("0Pa", "uniform", [pair(case("0Pa", "uniform"), case("0Pa", "uniform", mesh=1.4)), ""]),
                                  ("-1Pa", "random", ["", ""]),
@@ -97,7 +101,7 @@ def report(folder):
         grown = run.history["spread_area"] > 5e-12
         axes[2].plot(run.history["time"][grown] * US, 100.0 * run.history["front_modulation"][grown], label=label(options))
     axes[0].set(aspect="equal", xlabel="x (µm)", ylabel="y (µm)", title=f"front at {TIME * US:g} µs")
-    axes[1].set(xlabel="mode m", ylabel="amplitude over radius (%)", yscale="log", title="spectrum")
+    axes[1].set(xlabel="mode m", ylabel="amplitude over radius (%)", yscale="log", ylim=(1e-2, 100.0), title="spectrum")
     axes[2].set(xlabel="time (µs)", ylabel="modulation (%)", title="waves of the front")
     axes[2].legend(fontsize=7)
     return text, {"wavy_front": figure}
