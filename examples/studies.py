@@ -40,7 +40,7 @@ minutes. Every study has its folder, with its question, its commands and the com
 | 1. the stress in the nucleus depends on the stiffness of the substrate | yes, by a few per cent, early, on elastic substrates | by 0.1 to 0.3 % with the printed viscous constants; it saturates with stiffness |
 | 2. so does the spreading area | yes, early, on elastic substrates; no size can be given | the change differs between meshes by more than itself; 0.3 % and less with the printed constants |
 | 3. the front becomes wavy | not with the small active stress of the paper (−1 Pa): those waves are the mesh's | with −1 kPa and a director that varies in space: 4 to 5 % of the radius, the same waves on turned and finer meshes |
-| 4. the cell goes to the stiff side (Figs. 11, 12) | no | the front leads on either side in turn, by 0.4 % of its radius at most; the centre of mass moves a few nm to the soft side |
+| 4. the cell goes to the stiff side (Figs. 11, 12) | no | the front leads on either side in turn, by less than 1 % of its radius; the centre of mass moves by a few nm, to the soft side |
 | the axisymmetric model (Fig. 10) | not computed | |
 """
 
