@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -278,7 +279,7 @@ void run_static(const CompressionParameters& p, Body body, Recorder& recorder, i
       fields.refresh(body, 0.0);
       recorder.record(body, fields.view(), 0.0, depth, force, layer, energies);
       if (k * frames / p.samples != (k - 1) * frames / p.samples || k == 0) recorder.write_frame(body, fields.view(), static_cast<double>(k) / p.samples);
-      progress.update(static_cast<double>(k) / p.samples, iterations);
+      progress.update(static_cast<double>(k) / p.samples, static_cast<std::uint64_t>(iterations));
     }
   } catch (const ComputationError&) {
     finish(false);
