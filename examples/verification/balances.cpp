@@ -82,7 +82,7 @@ void driven_block(Report& report, long steps) {
             Materials{Region{"body", ModifiedMooneyRivlin{}}}};
   StableStep stable;
   stable.calibrate(body);
-  const double step = 0.5 * stable.largest_step(body, 0.0);
+  const double step = 0.3 * stable.largest_step(body, 0.0);  // deformation halves the stable step at times
   const auto shake = [](const Vector3&, double t) { return Vector3(0.0, 0.15e-6 * (1.0 - std::cos(4e6 * t)), 0.0); };
   Simulation simulation{Bodies{std::move(body)}, Contacts{},
                         Boundaries{on<0>(fixed(start)), on<0>(PrescribedMotion{end, shake})},
@@ -93,7 +93,7 @@ void driven_block(Report& report, long steps) {
   const EnergyLedger& energy = simulation.ledger();
   report.at_most(
       fmt::format("driven block: energy + dissipated - work, over the largest work, {} steps", simulation.steps()),
-      worst / energy.largest_work, 1e-2, "balance; 0.5 of the stable step");
+      worst / energy.largest_work, 1e-2, "balance; 0.3 of the stable step at rest");
   report.note("driven block: dissipated by the stabilisation over the largest work",
               energy.dissipated / energy.largest_work, std::numeric_limits<double>::quiet_NaN(), "part of the balance");
 }
