@@ -1,6 +1,6 @@
 // Contact and boundary terms at the paper's size: one evaluation on the cell 200 nm above its substrate.
 #include "report.hpp"
-#include "spreading_case.hpp"
+#include <common/spreading_parameters.hpp>
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "report.hpp"
-#include "spreading_case.hpp"
+#include <common/spreading_parameters.hpp>
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "report.hpp"
-#include "spreading_case.hpp"
+#include <common/spreading_parameters.hpp>
 
 namespace {
 
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
   add("NeoHookean", NeoHookean{});
   add("NeoHookean_by_energy", EnergyOnly{});
   add("ModifiedMooneyRivlin", p.nucleus_law());
-  add("YangVisco", p.substrate_law(p.stiffness));
+  add("YangVisco", p.substrate_law(10.0));
   add("NematicGel", p.cytoplasm_law());
   const auto graded = Graded{[p](const Vector3& X) { return p.substrate_law(2.0 + X[0] / 1e-6); }};
   benchmark::RegisterBenchmark("internal_forces/Graded_YangVisco",

@@ -1,6 +1,6 @@
 // Set-up of a body, second half: the table of gradients of a quadrature rule, at the paper's size.
 #include "report.hpp"
-#include "spreading_case.hpp"
+#include <common/spreading_parameters.hpp>
 
 namespace {
 

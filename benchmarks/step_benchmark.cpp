@@ -1,7 +1,7 @@
 // One complete step: of the cell on its substrate at the paper's size, everything on; and of an elastic block in free
 // flight after a bending velocity, with and without stabilisation. The argument is the number of threads.
 #include "report.hpp"
-#include "spreading_case.hpp"
+#include <common/spreading_case.hpp>
 
 namespace {
 
@@ -22,7 +22,8 @@ void steps(benchmark::State& state, Simulation& simulation) {
 
 void cell_on_substrate(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(0)));
-  auto simulation = SpreadingCase{}.simulation();
+  const SpreadingParameters p;
+  auto simulation = SpreadingCase{p, p.substrate_law(10.0)}.simulation();
   steps(state, simulation);
   const auto& cell = simulation.body<0>();
   const auto& substrate = simulation.body<1>();

@@ -3,14 +3,13 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include <tactoid/tactoid.hpp>
 
 #include <common/options.hpp>
-#include <common/spreading_parameters.hpp>
+#include <common/spreading_case.hpp>
 #include <common/spreading_recorder.hpp>
 
 namespace tactoid {
@@ -37,27 +36,7 @@ struct SpreadingRun {
   void operator()(const SpreadingParameters& p, const Options& options, const Law& substrate_law) const {
     set_thread_count(threads);
     const auto start = std::chrono::steady_clock::now();
-    PointCloud<3> substrate_cloud = p.substrate_cloud();
-    const auto bottom =
-        select(substrate_cloud, [&](const Point<3>& X) { return X[2] < -p.substrate_height * (1.0 - 1e-9); });
-    PointCloud<3> cell_cloud = p.cell_cloud();
-    Field director = p.director_field(cell_cloud);
-
-    Body cell{"cell",
-              std::move(cell_cloud),
-              Rkpm<3>{.support = p.support},
-              p.quadrature(),
-              Materials{Region{"nucleus", p.nucleus_law()}, Region{"cytoplasm", p.cytoplasm_law()}},
-              DirectorField<>{.diffusivity = p.diffusivity, .core_size = p.core_size},
-              std::move(director)};
-    Body substrate{"substrate", std::move(substrate_cloud), Rkpm<3>{.support = p.support}, p.quadrature(),
-                   Materials{Region{"body", substrate_law}}};
-    Simulation simulation{
-        Bodies{std::move(cell), std::move(substrate)},
-        Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
-                 between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30})},
-        Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
-        CentralDifference{.safety = p.safety, .time_step = p.time_step}};
+    auto simulation = SpreadingCase<Law>{p, substrate_law}.simulation();
 
     prepare_folder(out);
     options.write_toml(std::filesystem::path(out) / "parameters.toml");
