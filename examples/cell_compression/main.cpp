@@ -206,12 +206,8 @@ void run_explicit(const CompressionParameters& p, Body body, Recorder& recorder,
       .law = {.penalty = p.penalty},
       .surface = {plane, [&p](double t) { return Vector3(0.0, 0.0, -p.depth(t)); },
                   [&p](double t) { return Vector3(0.0, 0.0, -p.speed(t)); }}};
-  // The stiffness of contact is asked for every 20 steps only: a first touch in between needs a cap of the step.
-  PointCloud<3> surface = body.cloud();
-  std::erase_if(surface.facets, [&](const auto& f) {
-    return !std::all_of(f.begin(), f.end(), [&](Index i) { return is_surface(surface.positions[i]); });
-  });
-  const FacetSurface<3> facets(surface);
+  // No step is longer than the plate's penalty allows, wherever it touches.
+  const FacetSurface<3> facets(with_facets_where(body.cloud(), is_surface));
   double rate = 0.0;
   for (const Index i : facets.nodes) rate = std::max(rate, p.penalty * facets.nodal_area[i] / body.masses()[i]);
   auto conditions = symmetry(body.cloud());

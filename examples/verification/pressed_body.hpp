@@ -61,11 +61,7 @@ namespace tactoid::verification {
 
 /// The cloud with those of its facets only that lie on the sphere of the given radius: where an octant can touch.
 [[nodiscard]] inline PointCloud<3> on_sphere(PointCloud<3> cloud, double radius) {
-  std::erase_if(cloud.facets, [&](const auto& facet) {
-    return !std::all_of(facet.begin(), facet.end(),
-                        [&](Index i) { return std::abs(cloud.positions[i].norm() - radius) < 1e-9 * radius; });
-  });
-  return cloud;
+  return with_facets_where(std::move(cloud), [radius](const Point<3>& X) { return std::abs(X.norm() - radius) < 1e-9 * radius; });
 }
 
 /// Static contact of the octant of a ball with a rigid plate above its pole, by Newton's method. Symmetry holds the

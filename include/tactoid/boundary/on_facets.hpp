@@ -1,11 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <utility>
-
 #include <tactoid/boundary/boundary.hpp>
 #include <tactoid/core/errors.hpp>
-#include <tactoid/geometry/point_cloud.hpp>
+#include <tactoid/geometry/facets.hpp>
 
 namespace tactoid {
 
@@ -24,10 +21,7 @@ struct OnFacets {
   template <int D>
     requires BoundaryTerm<Term, D>
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
-    PointCloud<D> part = cloud;
-    std::erase_if(part.facets, [&](const auto& facet) {
-      return !std::all_of(facet.begin(), facet.end(), [&](Index i) { return predicate(cloud.positions[i]); });
-    });
+    const PointCloud<D> part = with_facets_where(cloud, predicate);
     if (part.facets.empty()) throw GeometryError("OnFacets: no facet of the body satisfies the predicate.");
     term.initialize(part, body);
   }

@@ -59,6 +59,15 @@ template <int D>
   return facets;
 }
 
+/// The same cloud with those of its facets only all of whose particles satisfy a predicate of the reference position.
+template <int D, class Predicate>
+[[nodiscard]] PointCloud<D> with_facets_where(PointCloud<D> cloud, const Predicate& predicate) {
+  std::erase_if(cloud.facets, [&](const auto& facet) {
+    return !std::all_of(facet.begin(), facet.end(), [&](Index i) { return predicate(cloud.positions[i]); });
+  });
+  return cloud;
+}
+
 /// Vector area of a facet: ∫ n dA over the bilinear surface (m²; m for D = 2). Not for D = 1, where a facet has
 /// no orientation of its own.
 template <int D>
