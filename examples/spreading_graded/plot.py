@@ -12,6 +12,7 @@ import tomllib
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from plot_program import run
 from vtu_reader import Grid, read_history, read_series
 
 import matplotlib
@@ -78,8 +79,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (OSError, ValueError, KeyError, IndexError) as error:
-        print(f"plot.py: {error}", file=sys.stderr)
-        sys.exit(2)
+    run(main)

@@ -11,6 +11,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
+from plot_program import run
 from vtu_reader import HEXAHEDRON, Grid, read_history, read_series
 
 import matplotlib
@@ -204,8 +205,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (OSError, ValueError, KeyError, IndexError) as error:
-        print(f"plot.py: {error}", file=sys.stderr)
-        sys.exit(2)
+    run(main)
