@@ -13,6 +13,7 @@
 #include <tactoid/geometry/facets.hpp>
 #include <tactoid/geometry/o_grid.hpp>
 #include <tactoid/geometry/order.hpp>
+#include <tactoid/geometry/part.hpp>
 #include <tactoid/simulation/body_fields.hpp>
 #include <tactoid/simulation/stiffness.hpp>
 
@@ -31,31 +32,20 @@ namespace tactoid::verification {
   const auto in_shell = [&](int k, const Point<3>& d) -> Point<3> {
     return std::pow(inner, 1.0 - static_cast<double>(k) / shells) * detail::equiangular_direction<3>(d);
   };
-  const PointCloud<3> whole = detail::o_grid<3>(2 * cells, shells, in_core, in_shell);
-  PointCloud<3> octant;
-  std::vector<Index> number(whole.size());
-  std::vector<bool> inside(whole.size());
+  PointCloud<3> octant = part_where(detail::o_grid<3>(2 * cells, shells, in_core, in_shell), [inner](const Point<3>& p) {
+    return p[0] > -1e-9 * inner && p[1] > -1e-9 * inner && p[2] < 1e-9 * inner;
+  });
   const Point<3> center(0.0, 0.0, -1.0);
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    Point<3> p = whole.positions[i];
-    inside[i] = p[0] > -1e-9 * inner && p[1] > -1e-9 * inner && p[2] < 1e-9 * inner;
-    if (!inside[i]) continue;
-    p[2] = -p[2];
+  for (Point<3>& X : octant.positions) {
+    Point<3> p(X[0], X[1], -X[2]);
     for (int k = 0; k < 3; ++k)
       if (std::abs(p[k]) < 1e-9 * inner) p[k] = 0.0;
     Point<3> x = center + 2.0 * (p - center) / (p - center).squaredNorm();
     if (std::abs(p.norm() - 1.0) < 1e-9) x[2] = 0.0;
-    number[i] = static_cast<Index>(octant.size());
-    octant.positions.push_back(radius * x);
-  }
-  for (const auto& cell : whole.cells) {
-    if (!std::all_of(cell.begin(), cell.end(), [&](Index i) { return inside[i]; })) continue;
-    PointCloud<3>::Cell renumbered;
-    std::transform(cell.begin(), cell.end(), renumbered.begin(), [&](Index i) { return number[i]; });
-    octant.cells.push_back(renumbered);
+    X = radius * x;
   }
   octant.cell_regions.assign(octant.cells.size(), 0);
-  octant.facets = extract_facets(octant);
+  octant.regions = {"body"};
   return morton_ordered(octant);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactoid/boundary/axis_condition.hpp>
 #include <tactoid/boundary/body_force.hpp>
 #include <tactoid/boundary/boundary.hpp>
 #include <tactoid/boundary/curvature_surface_tension.hpp>

@@ -63,14 +63,20 @@ struct CurvatureSurfaceTension {
       for (std::size_t k = 0; k < nodes.size(); ++k)
         total.external_power += tension * s.force[f][k].dot(body.velocity[nodes[k]].template head<3>());
       for (const auto& point : s.quadrature.points) {
-        const Vector3 c = surface.tangents(f, point.local, body.position).area_vector();
+        const FacetTangents x = surface.tangents(f, point.local, body.position);
+        const Vector3 c = x.area_vector();
+        // Of the section alone in a meridian: the rings widen with the distance from the axis, and would tilt the normals.
+        const Vector3 facing = D == 2 ? Vector3(c / x.t.norm()) : c;
         for (std::size_t k = 0; k < nodes.size(); ++k) {
-          normals[nodes[k]].template head<3>() += point.weight * point.shape[k] * c;
+          normals[nodes[k]].template head<3>() += point.weight * point.shape[k] * facing;
           areas[nodes[k]] += point.weight * point.shape[k] * c.norm();
         }
       }
     }
-    for (const Index i : surface.nodes) normals[i].normalize();
+    for (const Index i : surface.nodes) {
+      if (surface.axisymmetric && body.reference[i][0] == 0.0) normals[i][0] = 0.0;  // what the other half would do
+      normals[i].normalize();
+    }
     for (Index f = 0; f < surface.facets.size(); ++f) {
       const auto& nodes = surface.facets[f];
       for (const auto& point : s.quadrature.points) {
@@ -79,9 +85,11 @@ struct CurvatureSurfaceTension {
         // ∇·n = (a_t × ĉ)·∂n/∂s + (ĉ × a_s)·∂n/∂t over |c|: the reciprocal tangents.
         const Vector3 unit = c.normalized(), by_s = a.t.cross(unit), by_t = unit.cross(a.s);
         const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
+        const auto ring = surface.circumference_slopes(point.local);  // e_r turns around the axis: ∂n/∂t has n_r
         double divergence_times_area = 0.0;
         for (std::size_t k = 0; k < nodes.size(); ++k)
-          divergence_times_area += normals[nodes[k]].template head<3>().dot(ns[k] * by_s + nt[k] * by_t);
+          divergence_times_area += normals[nodes[k]].template head<3>().dot(ns[k] * by_s + nt[k] * by_t) +
+                                   ring[k] * by_t[2] * normals[nodes[k]][0];
         for (std::size_t k = 0; k < nodes.size(); ++k)
           curvatures[nodes[k]] += point.weight * point.shape[k] * divergence_times_area / areas[nodes[k]];
       }

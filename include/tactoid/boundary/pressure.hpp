@@ -16,7 +16,8 @@ namespace tactoid {
 /// Pressures are gauge pressures. An ambient pressure p₀ acts on all sides, also where the body is in contact (a thin
 /// liquid film separates the surfaces), and is balanced by the same p₀ inside: measured from p₀, it drops out of every
 /// force. Entering the 100 kPa of an atmosphere as `pressure` only compresses the body, and drowns the few kPa that
-/// move a cell in discretisation error. A BoundaryTerm in 2 (per thickness) and 3 dimensions.
+/// move a cell in discretisation error. A BoundaryTerm in 2 (per thickness, or of the rings of a meridian) and
+/// 3 dimensions.
 struct AmbientPressure {
   double pressure = 0.0;                     ///< p, gauge, Pa; positive compresses
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()
@@ -42,9 +43,9 @@ struct AmbientPressure {
             const Vector3 force = point.shape[k] * load;
             const Index node = s.surface.facets[f][k];
             s.force[f][k] += force;
-            // Σ f·x = −D p V; on an open surface the power is wanted instead.
+            // Σ f·x = −D p V (3 for a body of revolution); on an open surface the power is wanted instead.
             if (s.surface.closed)
-              s.value[f] -= force.dot(body.position[node].template head<3>()) / D;
+              s.value[f] -= force.dot(body.position[node].template head<3>()) / (s.surface.axisymmetric ? 3 : D);
             else
               s.value[f] += force.dot(body.velocity[node].template head<3>());
           }
@@ -63,9 +64,10 @@ struct AmbientPressure {
         for (const auto& point : s.quadrature.points) {
           const FacetTangents a = s.surface.tangents(f, point.local, body.position);
           const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
+          const auto ring = s.surface.circumference_slopes(point.local);
           double row = 0.0;
           for (std::size_t k = 0; k < ns.size(); ++k)
-            row += std::abs(ns[k]) * a.t.norm() + std::abs(nt[k]) * a.s.norm();
+            row += std::abs(ns[k]) * a.t.norm() + (std::abs(nt[k]) + ring[k]) * a.s.norm();
           for (std::size_t k = 0; k < ns.size(); ++k)
             sum[s.surface.facets[f][k]] += std::abs(pressure) * point.weight * point.shape[k] * row;
         }

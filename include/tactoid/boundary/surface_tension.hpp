@@ -44,7 +44,7 @@ struct SurfaceIntegral {
 
 namespace detail {
 
-/// Area (length) of facet `f` and its gradient in the facet's nodes.
+/// Area (length, area of the ring) of facet `f` and its gradient in the facet's nodes.
 template <int D>
 double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4> x,
                   std::array<Vector3, FacetSurface<D>::corners>& gradient) {
@@ -58,7 +58,11 @@ double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4>
     const Vector3 m = c / length;
     const Vector3 by_s = point.weight * a.t.cross(m), by_t = point.weight * m.cross(a.s);
     const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
-    for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] += ns[k] * by_s + nt[k] * by_t;
+    const auto ring = s.surface.circumference_slopes(point.local);
+    for (std::size_t k = 0; k < gradient.size(); ++k) {
+      gradient[k] += ns[k] * by_s + nt[k] * by_t;
+      gradient[k][0] += ring[k] * by_t[2];
+    }
   }
   return area;
 }
@@ -74,24 +78,26 @@ template <int D>
       const FacetTangents a = s.surface.tangents(f, point.local, body.position);
       const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
       const double length = a.area_vector().norm();
+      auto turn = s.surface.circumference_slopes(point.local);  // how the second tangent follows the nodes
       double all = 0.0, all_s = 0.0, all_t = 0.0;
       std::array<double, FacetSurface<D>::corners> g;
       for (std::size_t k = 0; k < g.size(); ++k) {
         g[k] = (ns[k] * a.t - nt[k] * a.s).norm();
         all += g[k];
         all_s += std::abs(ns[k]);
-        all_t += std::abs(nt[k]);
+        turn[k] += std::abs(nt[k]);
+        all_t += turn[k];
       }
       for (std::size_t k = 0; k < g.size(); ++k)
         sum[s.surface.facets[f][k]] +=
-            tension * point.weight * (g[k] * all / length + std::abs(ns[k]) * all_t + std::abs(nt[k]) * all_s);
+            tension * point.weight * (g[k] * all / length + std::abs(ns[k]) * all_t + turn[k] * all_s);
     }
   double rate = 0.0;
   for (const Index i : s.surface.nodes) rate = std::max(rate, sum[i] / body.mass[i]);
   return rate;
 }
 
-/// Surface tension as the gradient of the surface energy σ₀ A (D = 2: σ₀ times the length, per thickness): the force at
+/// Surface tension as the gradient of the surface energy σ₀ A (plane: σ₀ times the length, per thickness): the force at
 /// a particle is −σ₀ ∂A/∂x, with A integrated over the bilinear facets by 2×2 Gauss points. In the limit it is the
 /// traction −σ₀ κ n of Zeng and Li, Soft Matter 2012, 8, 5765, eqn (17). Exactly conservative: net force and torque are
 /// zero to round-off. A BoundaryTerm in 2 and 3 dimensions.
@@ -122,7 +128,7 @@ struct SurfaceTension {
     return integral.visit([&](const auto& s) { return area_stiffness_rate(s, body, tension); });
   }
 
-  /// Current area of the surface, m² (D = 2: length, m), at the last call of apply; tension must be positive.
+  /// Current area of the surface, m² (plane: length, m), at the last call of apply; tension must be positive.
   [[nodiscard]] double area() const {
     return integral.visit([&](const auto& s) {
       double sum = 0.0;

@@ -184,15 +184,14 @@ template <int D>
       const auto& corners = surface.facets[g];
       const std::size_t a = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), node) - corners.begin());
       const auto local = FacetSurface<D>::make_local(double(a & 1u), double(a >> 1u));
-      const FacetTangents tangents = surface.tangents(g, local, x);
-      const Vector3 area = tangents.area_vector();
       double angle = 1.0;
       if constexpr (D == 3) {
         // Edges of the facet leave this corner along ±∂x/∂s and ±∂x/∂t, with equal signs at corners 0 and 3.
+        const FacetTangents tangents = surface.tangents(g, local, x);
         const double cosine = tangents.s.dot(tangents.t) * ((a == 0 || a == 3) ? 1.0 : -1.0);
-        angle = std::atan2(area.norm(), cosine);
+        angle = std::atan2(tangents.area_vector().norm(), cosine);
       }
-      sum += angle * area.normalized();
+      sum += angle * surface.normal(g, local, x);
     }
   };
   if (p.corner >= 0) {

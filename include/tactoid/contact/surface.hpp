@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,16 +21,17 @@ namespace tactoid {
 inline constexpr Index no_facet = ~Index{0};
 
 /// Tangents of a facet at a point: ∂x/∂s and ∂x/∂t for s, t ∈ [0, 1]. In two dimensions ∂x/∂t is the unit vector
-/// out of the plane, so that the same cross product gives the outward normal and the length element.
+/// out of the plane, times the circumference 2πr in a meridian section, so that the same cross product gives the outward
+/// normal and the element of length, or of the ring's area.
 struct FacetTangents {
   Vector3 s, t;
-  /// ∂x/∂s × ∂x/∂t: outward, its length is the surface element da/(ds dt), m² (D = 2: m).
+  /// ∂x/∂s × ∂x/∂t: outward, its length is the surface element da/(ds dt), m² (plane: m).
   [[nodiscard]] Vector3 area_vector() const { return s.cross(t); }
 };
 
 /// The boundary of a body as facets: segments (D = 2) or bilinear quadrilaterals (D = 3), with who touches whom.
 /// The facets of a cloud never change; positions are handed in with each call, one per particle of the body, so
-/// the same object serves the reference and every deformed configuration.
+/// the same object serves the reference and every deformed configuration. The axis of a meridian section is no surface.
 template <int D>
 struct FacetSurface {
   static_assert(D == 2 || D == 3, "Surfaces exist in 2 and 3 dimensions.");
@@ -44,19 +46,23 @@ struct FacetSurface {
   std::vector<Index> nodes;        ///< particles on the surface, ascending
   std::vector<Index> ring_start;   ///< per particle: where its facets start in `ring` (one entry more than particles)
   std::vector<Index> ring;         ///< facets around each particle, ascending
-  std::vector<double> nodal_area;  ///< per particle: reference area ∫ N_I dA, m² (D = 2: m); 0 inside the body
+  std::vector<double> nodal_area;  ///< per particle: reference area ∫ N_I dA, m² (plane: m); 0 inside the body
   std::vector<std::array<Index, sides>> side_neighbors;  ///< per facet: who shares its sides, or no_facet
-  bool closed = false;                                   ///< every edge has a facet on both sides
+  bool closed = false;                                   ///< every edge has a facet on both sides, or is on the axis
+  bool axisymmetric = false;                             ///< segments of a meridian: each stands for its ring
 
   FacetSurface() = default;
 
   /// Throws GeometryError for a cloud without facets, or with periodic directions (its facets would wrap around).
-  explicit FacetSurface(const PointCloud<D>& cloud) : facets(cloud.facets) {
+  explicit FacetSurface(const PointCloud<D>& cloud) : facets(cloud.facets), axisymmetric(cloud.axisymmetric) {
+    std::erase_if(facets, [&](const Facet& facet) {
+      return std::all_of(facet.begin(), facet.end(), [&](Index i) { return i < cloud.size() && cloud.on_axis(cloud.positions[i]); });
+    });
     if (facets.empty())
       throw GeometryError("The cloud has no surface facets: contact and surface terms need PointCloud.facets.");
     if ((cloud.period.array() > 0.0).any())
       throw GeometryError("Contact and surface terms do not support clouds with periodic directions.");
-    build_rings(cloud.size());
+    build_rings(cloud);
     nodal_area.assign(cloud.size(), 0.0);
     Field reference(cloud.size());
     for (std::size_t i = 0; i < cloud.size(); ++i) reference[i] = pad(cloud.positions[i]);
@@ -110,7 +116,8 @@ struct FacetSurface {
   [[nodiscard]] FacetTangents tangents(Index facet, const Local& local, std::span<const Vector4> x) const {
     const Facet& c = facets[facet];
     if constexpr (D == 2) {
-      return {Vector3((x[c[1]] - x[c[0]]).template head<3>()), Vector3::UnitZ()};
+      const double r = (1.0 - local[0]) * x[c[0]][0] + local[0] * x[c[1]][0];
+      return {Vector3((x[c[1]] - x[c[0]]).template head<3>()), (axisymmetric ? 2.0 * std::numbers::pi * r : 1.0) * Vector3::UnitZ()};
     } else {
       const Vector4 along_s = (1.0 - local[1]) * (x[c[1]] - x[c[0]]) + local[1] * (x[c[3]] - x[c[2]]);
       const Vector4 along_t = (1.0 - local[0]) * (x[c[2]] - x[c[0]]) + local[0] * (x[c[3]] - x[c[1]]);
@@ -118,9 +125,30 @@ struct FacetSurface {
     }
   }
 
+  /// Rates of the tangents for the velocities v of the particles.
+  [[nodiscard]] FacetTangents tangent_rates(Index facet, const Local& local, std::span<const Vector4> v) const {
+    FacetTangents rates = tangents(facet, local, v);
+    if (D == 2 && !axisymmetric) rates.t.setZero();
+    return rates;
+  }
+
+  /// ∂(2πr)/∂r_a at a point of a meridian: how far the second tangent follows the radial places of the nodes; zero elsewhere.
+  [[nodiscard]] Shape circumference_slopes(const Local& local) const {
+    Shape slopes{};
+    if (!axisymmetric) return slopes;
+    slopes = shape(local);
+    for (double& slope : slopes) slope *= 2.0 * std::numbers::pi;
+    return slopes;
+  }
+
   /// Unit outward normal at a point of a facet.
   [[nodiscard]] Vector3 normal(Index facet, const Local& local, std::span<const Vector4> x) const {
-    return tangents(facet, local, x).area_vector().normalized();
+    if constexpr (D == 2) {  // also on the axis, where the ring has no length
+      const Vector4 along = x[facets[facet][1]] - x[facets[facet][0]];
+      return Vector3(along[1], -along[0], 0.0).normalized();
+    } else {
+      return tangents(facet, local, x).area_vector().normalized();
+    }
   }
 
   /// Facets around particle `node`.
@@ -147,7 +175,8 @@ struct FacetSurface {
   }
 
  private:
-  void build_rings(std::size_t particles) {
+  void build_rings(const PointCloud<D>& cloud) {
+    const std::size_t particles = cloud.size();
     ring_start.assign(particles + 1, 0);
     for (const Facet& f : facets)
       for (const Index n : f) {
@@ -170,7 +199,7 @@ struct FacetSurface {
       for (std::size_t k = 0; k < sides; ++k) {
         const auto [a, b] = side_corners(k);
         side_neighbors[f][k] = across(f, facets[f][a], facets[f][b]);
-        closed = closed && side_neighbors[f][k] != no_facet;
+        closed = closed && (side_neighbors[f][k] != no_facet || cloud.on_axis(cloud.positions[facets[f][a]]));
       }
   }
 };
@@ -185,7 +214,7 @@ struct FacetQuadrature {
     double weight;                          ///< Gauss weight on the unit facet (they sum to 1)
   };
   std::vector<FacetPoint> points;  ///< the same on every facet
-  std::vector<double> area;        ///< per facet and point (facet-major): reference area it stands for, m² (D = 2: m)
+  std::vector<double> area;        ///< per facet and point (facet-major): reference area it stands for, m² (plane: m)
 
   FacetQuadrature() = default;
 

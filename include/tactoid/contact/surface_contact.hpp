@@ -56,8 +56,7 @@ class ContactPass {
       if (area == ContactArea::current) {
         const auto& p = quadrature_.point(q);
         const FacetTangents x = slave_.tangents(quadrature_.facet_of(q), p.local, slave.position);
-        FacetTangents v = slave_.tangents(quadrature_.facet_of(q), p.local, slave.velocity);
-        if constexpr (D == 2) v.t.setZero();
+        const FacetTangents v = slave_.tangent_rates(quadrature_.facet_of(q), p.local, slave.velocity);
         const Vector3 normal = x.area_vector();
         a = p.weight * normal.norm();
         s.area_power = factor * p.weight * density * normal.normalized().dot(v.s.cross(x.t) + x.s.cross(v.t));

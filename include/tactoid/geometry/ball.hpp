@@ -35,33 +35,42 @@ struct Ball {
   }
 };
 
-/// Particles of a ball: (n + 1)³ + shells ((n + 1)³ − (n − 1)³) with n core cells; 4341 with the default counts.
-/// Throws ParameterError.
-[[nodiscard]] inline PointCloud<3> ball(const Ball& parameters) {
-  parameters.validate();
+namespace detail {
+
+/// Particles, cells and regions of a ball (D = 3) or of the circle in which a plane through its centre cuts it.
+template <int D>
+[[nodiscard]] PointCloud<D> ball_cells(const Ball& parameters, const Point<D>& center) {
   const double core_radius = parameters.shells > 0 ? parameters.core_radius : parameters.radius;
-  const auto core = [&](const detail::CubePoint<3>& point) -> Point<3> {
+  const auto core = [&](const CubePoint<D>& point) -> Point<D> {
     // A cube of half-edge `cube` R at the centre turns into the sphere at the surface. The two constants are a
     // compromise of the smallest corner Jacobian and the shortest edge, both relative to the largest.
     constexpr double cube = 0.85;
     const double rounded = std::pow(point.s, 1.5);
-    return parameters.center + core_radius * point.s *
-                                   ((1.0 - rounded) * cube * point.d +
-                                    rounded * detail::equiangular_direction<3>(point.d));
+    return center + core_radius * point.s * ((1.0 - rounded) * cube * point.d + rounded * equiangular_direction<D>(point.d));
   };
-  const auto shell = [&](int k, const Point<3>& d) -> Point<3> {
+  const auto shell = [&](int k, const Point<D>& d) -> Point<D> {
     const double fraction = static_cast<double>(k) / parameters.shells;
     const double graded = fraction * (1.0 + parameters.shell_grading * (1.0 - fraction));
     const double r = k == parameters.shells ? parameters.radius : core_radius + graded * (parameters.radius - core_radius);
-    return parameters.center + r * detail::equiangular_direction<3>(d);
+    return center + r * equiangular_direction<D>(d);
   };
-  PointCloud<3> cloud = detail::o_grid<3>(parameters.core_cells, parameters.shells, core, shell);
+  PointCloud<D> cloud = o_grid<D>(parameters.core_cells, parameters.shells, core, shell);
   if (parameters.shells == 0 || parameters.core_region == parameters.shell_region) {
     cloud.cell_regions.assign(cloud.cells.size(), 0);
     cloud.regions = {parameters.core_region};
   } else {
     cloud.regions = {parameters.core_region, parameters.shell_region};
   }
+  return cloud;
+}
+
+}  // namespace detail
+
+/// Particles of a ball: (n + 1)³ + shells ((n + 1)³ − (n − 1)³) with n core cells; 4341 with the default counts.
+/// Throws ParameterError.
+[[nodiscard]] inline PointCloud<3> ball(const Ball& parameters) {
+  parameters.validate();
+  PointCloud<3> cloud = detail::ball_cells<3>(parameters, parameters.center);
   cloud.facets = extract_facets(cloud);
   return morton_ordered(cloud);
 }

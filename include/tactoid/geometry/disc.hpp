@@ -56,26 +56,41 @@ struct Disc {
 
 namespace detail {
 
-[[nodiscard]] inline PointCloud<2> circle_cells(const Circle& circle) {
-  // Half-width c of the core such that the first ring is as wide as a core cell, 2 c / n:
-  // R = c + (2 c / n) (1 + g + … + g^(rings − 1)).
-  const int n = circle.core_cells;
+/// Widths of the first `count` rings over that of the first one.
+[[nodiscard]] inline double ring_widths(const Circle& circle, int count) {
   double widths = 0.0;
-  for (int k = 0; k < circle.rings; ++k) widths += std::pow(circle.growth, k);
-  const double half_width = circle.radius / (1.0 + 2.0 * widths / n);
+  for (int k = 0; k < count; ++k) widths += std::pow(circle.growth, k);
+  return widths;
+}
+
+/// Half-width c of the core such that the first ring is as wide as a core cell, 2 c / n:
+/// R = c + (2 c / n) (1 + g + … + g^(rings − 1)).
+[[nodiscard]] inline double core_half_width(const Circle& circle) {
+  return circle.radius / (1.0 + 2.0 * ring_widths(circle, circle.rings) / circle.core_cells);
+}
+
+/// Where ring k ends between the core (0) and the outermost circle (1).
+[[nodiscard]] inline double outward_share(const Circle& circle, int k) {
+  if (k == circle.rings) return 1.0;
+  const double all = ring_widths(circle, circle.rings);
+  double outward = 0.0;
+  for (int j = 0; j < k; ++j) outward += std::pow(circle.growth, j) / all;
+  return outward;
+}
+
+[[nodiscard]] inline PointCloud<2> circle_cells(const Circle& circle) {
+  const double half_width = core_half_width(circle);
   const auto core = [&](const CubePoint<2>& point) -> Point<2> {
     const double rounded = circle.core_roundness * point.s * point.s;
     return circle.center + half_width * point.s *
                                ((1.0 - rounded) * point.d + rounded * equiangular_direction<2>(point.d));
   };
   const auto shell = [&](int k, const Point<2>& d) -> Point<2> {
-    double outward = 0.0;
-    for (int j = 0; j < k; ++j) outward += std::pow(circle.growth, j) / widths;
-    if (k == circle.rings) outward = 1.0;
+    const double outward = outward_share(circle, k);
     return circle.center + (1.0 - outward) * (core({1.0, d}) - circle.center) +
            outward * circle.radius * equiangular_direction<2>(d);
   };
-  PointCloud<2> cloud = o_grid<2>(n, circle.rings, core, shell);
+  PointCloud<2> cloud = o_grid<2>(circle.core_cells, circle.rings, core, shell);
   cloud.cell_regions.assign(cloud.cells.size(), 0);
   cloud.regions = {circle.region};
   return cloud;

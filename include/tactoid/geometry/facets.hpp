@@ -68,8 +68,8 @@ template <int D, class Predicate>
   return cloud;
 }
 
-/// Vector area of a facet: ∫ n dA over the bilinear surface (m²; m for D = 2). Not for D = 1, where a facet has
-/// no orientation of its own.
+/// Vector area of a facet: ∫ n dA over the bilinear surface (m²; m for D = 2, in the section, where that is a
+/// meridian). Not for D = 1, where a facet has no orientation of its own.
 template <int D>
   requires(D > 1)
 [[nodiscard]] Point<D> facet_vector_area(const PointCloud<D>& cloud, const typename PointCloud<D>::Facet& facet) {
@@ -82,14 +82,15 @@ template <int D>
   }
 }
 
-/// Area of a facet, m² (length for D = 2, 1 for D = 1). The bilinear surface is integrated by 3 × 3 Gauss points:
+/// Area of a facet, m² (length for D = 2, area of the ring in a meridian section, 1 for D = 1). The bilinear surface is integrated by 3 × 3 Gauss points:
 /// exact where it is plane, and for mildly warped facets to many digits.
 template <int D>
 [[nodiscard]] double facet_area(const PointCloud<D>& cloud, const typename PointCloud<D>::Facet& facet) {
   if constexpr (D == 1) {
     return 1.0;
   } else if constexpr (D == 2) {
-    return facet_vector_area(cloud, facet).norm();
+    const auto x = facet_corners(cloud, facet);
+    return facet_vector_area(cloud, facet).norm() * 0.5 * (cloud.circumference(x[0]) + cloud.circumference(x[1]));
   } else {
     const auto x = facet_corners(cloud, facet);
     double area = 0.0;

@@ -23,7 +23,8 @@ struct NodalCell {
 };
 
 /// Nodal cells of all particles, one per (particle, region), sorted by particle and region. Volumes and centroids
-/// are exact integrals of the multilinear cells: the volumes sum to the volume of the polyhedron.
+/// are exact integrals of the multilinear cells: the volumes sum to the volume of the polyhedron. In a meridian section the
+/// volume is that of the ring, 2π ∫ R dA, and the centroid that of the part of the section.
 template <int D>
 [[nodiscard]] std::vector<NodalCell<D>> nodal_cells(const PointCloud<D>& cloud) {
   constexpr std::size_t corners_per_cell = 1u << D;
@@ -62,7 +63,10 @@ template <int D>
       nodal.back().centroid += part.centroid;
     }
   }
-  for (NodalCell<D>& cell : nodal) cell.centroid = cloud.positions[cell.particle] + cell.centroid / cell.volume;
+  for (NodalCell<D>& cell : nodal) {
+    cell.centroid = cloud.positions[cell.particle] + cell.centroid / cell.volume;
+    cell.volume *= cloud.circumference(cell.centroid);
+  }
   return nodal;
 }
 
@@ -75,7 +79,8 @@ template <int D>
 }
 
 /// b_I = ∮ N_I n dA over the (bi)linear facets, m² (m, 1): zero inside. Exact, and consistent with the cells:
-/// Σ_I b_I = 0 and, without periodic directions, Σ_I b_I ⊗ X_I = V 1.
+/// Σ_I b_I = 0 and, without periodic directions, Σ_I b_I ⊗ X_I = V 1. (In a meridian section n dA is that of the ring, and the
+/// sums are those of ∇·(R …)/R: Σ_I b_I = 2π A e_R with the area A of the section.)
 template <int D>
 [[nodiscard]] std::vector<Point<D>> boundary_normal_integrals(const PointCloud<D>& cloud) {
   std::vector<Point<D>> integrals(cloud.size(), Point<D>::Zero());
@@ -87,7 +92,9 @@ template <int D>
   } else if constexpr (D == 2) {
     for (const auto& facet : cloud.facets) {
       const Point<2> half = 0.5 * facet_vector_area(cloud, facet);
-      for (const Index i : facet) integrals[i] += half;
+      const auto x = facet_corners(cloud, facet);
+      for (std::size_t a = 0; a < 2; ++a)  // the mean of the circumference, weighted by N_a
+        integrals[facet[a]] += half * (2.0 * cloud.circumference(x[a]) + cloud.circumference(x[1 - a])) / 3.0;
     }
   } else {
     for (const auto& facet : cloud.facets) {
@@ -159,7 +166,8 @@ template <int N, int D>
   for (std::size_t c = 0; c < cloud.cells.size(); ++c) {
     const Corners<D> corners = cell_corners(cloud, cloud.cells[c]);
     for_each_gauss_point<N, D>(Point<D>::Zero(), 1.0, [&](const Point<D>& xi, double weight) {
-      points.push_back({cell_position<D>(corners, xi), weight * cell_jacobian<D>(corners, xi).determinant(),
+      const Point<D> X = cell_position<D>(corners, xi);
+      points.push_back({X, weight * cell_jacobian<D>(corners, xi).determinant() * cloud.circumference(X),
                         static_cast<Index>(c), cloud.cell_regions[c]});
     });
   }

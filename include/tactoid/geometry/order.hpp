@@ -45,6 +45,7 @@ template <int D>
   PointCloud<D> ordered;
   ordered.regions = cloud.regions;
   ordered.period = cloud.period;
+  ordered.axisymmetric = cloud.axisymmetric;
   const std::vector<Index> order = morton_order<D>(cloud.positions);
   std::vector<Index> number(cloud.size());
   ordered.positions.reserve(cloud.size());

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace tactoid {
 /// Vertices stand in tensor order: vertex i + 2 j + 4 k of a cell is the corner (i, j, k) of the unit cube,
 /// and the Jacobian of the cell is positive. For a facet x(s, t) in that order, ∂x/∂s × ∂x/∂t points
 /// outwards (D = 3); for a segment from a to b, the tangent turned by −90° does (D = 2).
+///
+/// A cloud of D = 2 may be the meridian section of a body of revolution: X[0] = R >= 0 is the distance from the axis,
+/// X[1] = Z the place along it. Volumes, areas, masses, forces and energies are then those of the whole rings, 2πR times
+/// those of the section, and the third direction of every tensor is that around the axis.
 template <int D>
 struct PointCloud {
   static_assert(D >= 1 && D <= 3, "A point cloud has 1, 2 or 3 dimensions.");
@@ -29,8 +34,16 @@ struct PointCloud {
   std::vector<std::string> regions = {"body"};       ///< names of the regions
   std::vector<Facet> facets;                         ///< the boundary, oriented outwards
   Point<D> period = Point<D>::Zero();                ///< period in each direction, m; 0 where not periodic
+  bool axisymmetric = false;                         ///< a meridian section, D = 2 only
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }
+
+  /// Length of the ring through X, 2πR, m; 1 where the cloud is no meridian section.
+  [[nodiscard]] double circumference(const Point<D>& X) const {
+    return axisymmetric ? 2.0 * std::numbers::pi * X[0] : 1.0;
+  }
+  /// Whether X lies on the axis of a meridian section.
+  [[nodiscard]] bool on_axis(const Point<D>& X) const { return axisymmetric && X[0] == 0.0; }
 
   /// b − a by the shortest way around in periodic directions.
   [[nodiscard]] Point<D> difference(const Point<D>& a, const Point<D>& b) const {

@@ -18,7 +18,7 @@ template <int D>
 }
 
 /// Throws GeometryError, with place and cause, if the cloud has no particles or cells, a position that is not
-/// finite, an index out of range, a cell that uses a particle twice or has a Jacobian that is not positive at
+/// finite, one beyond the axis of a meridian section, an index out of range, a cell that uses a particle twice or has a Jacobian that is not positive at
 /// one of its corners, or a particle that no cell uses.
 template <int D>
 void validate(const PointCloud<D>& cloud) {
@@ -33,6 +33,14 @@ void validate(const PointCloud<D>& cloud) {
       throw GeometryError(fmt::format(
           "The period {:g} m in direction {} is not allowed: it must be zero (not periodic) or positive.",
           cloud.period[k], k));
+  if (cloud.axisymmetric) {
+    if (D != 2) throw GeometryError(fmt::format("A cloud of {} dimensions cannot be axisymmetric: only one of 2 is a meridian section.", D));
+    if (cloud.period[0] > 0.0) throw GeometryError("An axisymmetric cloud cannot be periodic across its axis.");
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if (cloud.positions[i][0] < 0.0)
+        throw GeometryError(fmt::format("Particle {} at {} of an axisymmetric cloud lies beyond the axis X = 0.", i,
+                                        describe<D>(cloud.positions[i])));
+  }
   if (cloud.cell_regions.size() != cloud.cells.size())
     throw GeometryError(fmt::format("The point cloud has {} cells but {} entries in cell_regions.", cloud.cells.size(),
                                     cloud.cell_regions.size()));

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <tactoid/contact/surface.hpp>
+#include <tactoid/core/errors.hpp>
 #include <tactoid/core/tensor.hpp>
 
 namespace tactoid {
@@ -185,6 +186,32 @@ namespace detail {
     if (m >= 2) sum += 0.5 * c.squaredNorm();
   }
   front.modulation = std::sqrt(sum);
+  return front;
+}
+
+/// The same of a meridian section on a substrate across its axis: the area is that of the rings with gap < cutoff, cut
+/// linearly within a facet, and the front is the circle where the contour is outermost; it has no waves. Throws
+/// ParameterError for a surface that is no meridian.
+[[nodiscard]] inline ContactFront contact_front(const FacetSurface<2>& surface, std::span<const Vector4> position,
+                                                std::span<const double> gaps, double cutoff) {
+  if (!surface.axisymmetric) throw ParameterError("contact_front: the surface in two dimensions must be that of an axisymmetric cloud.");
+  ContactFront front;
+  front.modes = {1.0};
+  front.phases = {0.0};
+  double height = 0.0;
+  for (const auto& [a, b] : surface.facets) {
+    const double ga = gaps[a] - cutoff, gb = gaps[b] - cutoff;
+    if (ga >= 0.0 && gb >= 0.0) continue;
+    const double cut = ga * gb < 0.0 ? ga / (ga - gb) : 0.0;
+    const double crossing = (1.0 - cut) * position[a][0] + cut * position[b][0];
+    const double from = ga < 0.0 ? position[a][0] : crossing, to = gb < 0.0 ? position[b][0] : crossing;
+    front.area += std::numbers::pi * (to * to - from * from);  // facets that face the substrate run outward
+    if (ga * gb < 0.0 && crossing > front.radius) {
+      front.radius = crossing;
+      height = (1.0 - cut) * position[a][1] + cut * position[b][1];
+    }
+  }
+  front.center[1] = front.centroid[1] = height;
   return front;
 }
 

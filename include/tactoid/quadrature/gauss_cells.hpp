@@ -72,6 +72,7 @@ struct GaussCells {
       for (std::size_t k = 0; k < row.size(); ++k) {
         const std::size_t e = table.offsets[q] + k;
         for (int d = 0; d < D; ++d) table.entries[e].gradient[d] = shape.gradient[k][d];
+        if (cloud.axisymmetric) table.entries[e].gradient[2] = shape.value[k] / positions[q][0];
         table.point_values[e] = shape.value[k];
       }
       table.owner[q] = row[static_cast<std::size_t>(std::max_element(shape.value.begin(), shape.value.end()) - shape.value.begin())];

@@ -32,6 +32,9 @@ namespace tactoid {
 ///   nearest particles: w_J = 1 − (|ΔX_J| / (`stabilization_reach` × spacing of J))², 0 beyond. Short bonds act on the
 ///   shortest waves, which are the spurious ones; the whole support costs more and separates them less.
 ///   c = `solid_ratio` × the shear modulus of the law, or `fluid_modulus` where the law has none.
+/// - In a meridian section the same holds for the rings: V_q = 2π ∫ R dA with the centroid of the part of the section, the
+///   field at a point, of the stretch around the axis 1 + u_R/R, is the one of the linear shape functions, and the divergence
+///   theorem includes that stretch.
 /// - The mass of a point goes to its neighbours by linear shape functions φ_I(X_q): mass and centre of mass of the
 ///   body are exact. They are linear for a quadratic basis too, whose shares can be negative at corners.
 struct NodalCentroids {
@@ -108,13 +111,27 @@ struct NodalCentroids {
       const std::vector<Point<D>> normals = boundary_normal_integrals(cloud);
       Field boundary;
       for (const Point<D>& b : normals) boundary.push_back(pad(b));
+      if (cloud.axisymmetric) take_off_hoops(table, boundary);
       make_consistent(table, weights, boundary, consistency_tolerance);
     }
+    if (cloud.axisymmetric)
+      for (std::size_t q = 0; q < table.points(); ++q)
+        for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
+          table.entries[e].gradient[2] = table.mass_shares[e] / table.position[q][0];
     weigh_stabilization(table, cloud);
     return table;
   }
 
  private:
+  /// What is left of ∮ N_I n dA for the gradients in a meridian section, where div(φ e_R) = ∂φ/∂R + φ/R:
+  ///   Σ_q V_q G_qI = b_I − Σ_q V_q φ_I(X_q)/R_q e_R.
+  /// An affine fit has nothing to add to it, since V_q/R_q is 2π times the part of the section that has its centroid in q.
+  static void take_off_hoops(const PointTable& table, Field& boundary) {
+    for (std::size_t q = 0; q < table.points(); ++q)
+      for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
+        boundary[table.entries[e].particle][0] -= table.volume[q] * table.mass_shares[e] / table.position[q][0];
+  }
+
   /// Weights of the stabilisation; its pairs move to the front of each row.
   template <int D>
   void weigh_stabilization(PointTable& table, const PointCloud<D>& cloud) const {

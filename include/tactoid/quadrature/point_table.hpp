@@ -11,7 +11,8 @@ namespace tactoid {
 
 /// One pair of a quadrature point q and a particle I: 32 bytes, read in one piece by the hot loop.
 struct alignas(32) TableEntry {
-  double gradient[3] = {0.0, 0.0, 0.0};  ///< ∇₀φ_I(X_q), or the value-based operator G_qI; 1/m
+  double gradient[3] = {0.0, 0.0, 0.0};  ///< ∇₀φ_I(X_q), or the value-based operator G_qI; 1/m. In a meridian section the
+                                         ///< third one is φ_I(X_q)/R_q, which gives the parts around the axis
   Index particle = 0;                    ///< I
 };
 
@@ -40,9 +41,10 @@ struct PointChunk {
 struct PointTable {
   std::size_t particles = 0;  ///< number of unknown vectors
   int dimension = 3;          ///< of the body
+  bool axisymmetric = false;  ///< a meridian section (PointCloud): points stand for rings
 
   std::vector<Vector3> position;     ///< X_q, m
-  std::vector<double> volume;        ///< V_q, m³ (m² and m per unit thickness and section in 2D and 1D)
+  std::vector<double> volume;        ///< V_q, m³ (m² and m per unit thickness and section in plane and one-dimensional bodies)
   std::vector<Index> region;         ///< of the material at q
   std::vector<Index> owner;          ///< particle that q belongs to (value-based), or the nearest one
   std::vector<std::size_t> offsets;  ///< row of q: entries[offsets[q]] .. entries[offsets[q + 1] - 1]

@@ -26,6 +26,7 @@ template <int D>
   PointTable table;
   table.particles = cloud.size();
   table.dimension = D;
+  table.axisymmetric = cloud.axisymmetric;
   table.period.setZero();
   table.period.head(D) = cloud.period;
   table.particle_position.reserve(cloud.size());

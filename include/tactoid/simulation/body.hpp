@@ -351,6 +351,11 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     const auto row = table_.row(q);
     if constexpr (has_director) rows::gather(row, motion<Rate>(), director.data(), g.motion, g.director);
     else rows::gather(row, motion<Rate>(), g.motion);
+    if constexpr (dimension == 2)
+      if (table_.axisymmetric) {
+        rows::turn_around_axis(g.motion);
+        if constexpr (has_director) rows::turn_around_axis(g.director);
+      }
   }
 
   template <bool Rate, class T>
@@ -423,6 +428,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         rows::Gradient<> flux;  // components beyond the dimension are no unknowns, whatever the stress
         for (int K = 0; K < dimension; ++K)
           for (int i = 0; i < dimension; ++i) flux.column[K][i] = V * lane(response.stress(i, K), l);
+        if constexpr (dimension == 2)
+          if (table_.axisymmetric) flux.column[2][0] = V * lane(response.stress(2, 2), l);  // the stretch around the axis is u_R/R
         const auto row = table_.row(q);
         if (q + W < chunk.end) rows::prefetch(table_.row(q + W));
         if (kappa > 0.0) {
@@ -440,6 +447,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
           rows::Gradient<> h;
           for (int K = 0; K < 3; ++K)
             for (int i = 0; i < 3; ++i) h.column[K][i] = V * lane(flux_h(i, K), l);
+          if constexpr (dimension == 2)
+            if (table_.axisymmetric) rows::turn_back(h);
           rows::scatter(row, h, director_flux.data());
         }
       }

@@ -21,6 +21,23 @@ struct Gradient {
   Values<N> column[3] = {Values<N>::Zero(), Values<N>::Zero(), Values<N>::Zero()};
 };
 
+/// In a meridian section the third column of a gathered gradient is f/R. The parts of ∂f/∂X around the axis, where the unit
+/// vectors turn, are made of it: (−f_θ, 0, f_R)/R, with the third component θ around the axis.
+template <int N>
+inline void turn_around_axis(Gradient<N>& df) {
+  for (int half = 0; half < N; half += 4) {
+    const double f_r = df.column[2][half], f_theta = df.column[2][half + 2];
+    df.column[2][half] = -f_theta;
+    df.column[2][half + 1] = 0.0;
+    df.column[2][half + 2] = f_r;
+  }
+}
+/// The transpose, for a flux that is scattered: what acts around the axis on f_R and f_θ.
+inline void turn_back(Gradient<>& flux) {
+  const Vector4 around = flux.column[2];
+  flux.column[2] = Vector4(around[2], 0.0, -around[0], 0.0);
+}
+
 // The loops below work on local copies: what a store to a force may have changed, a compiler must load anew. (A copy by
 // assignment is a load; the copy constructor would go through the stack.)
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <tactoid/boundary/axis_condition.hpp>
 #include <tactoid/boundary/boundary.hpp>
 #include <tactoid/boundary/essential_conditions.hpp>
 #include <tactoid/boundary/prescribed_motion.hpp>
@@ -58,7 +59,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         if constexpr (is_motion<decltype(on)>)
           if (std::decay_t<decltype(on)>::body == b) motions.push_back(on.term);
       });
-      essential_[b] = EssentialConditions(std::move(motions), body.particle_values(), body.table().particle_position, body.masses());
+      essential_[b] = EssentialConditions(with_axis_condition(body.cloud(), std::move(motions)), body.particle_values(), body.table().particle_position, body.masses());
       essential_[b].impose(0.0, 0.0, 0.0, body.displacement, body.velocity);
       fields_[b].refresh(body, 0.0);
     });

@@ -156,8 +156,10 @@ class StableStep {
     };
     const Field rest = internal_forces();
     double length = std::numeric_limits<double>::infinity();
-    for (std::size_t q = 0; q < body.table().points(); ++q)
-      length = std::min(length, std::pow(body.table().volume[q], 1.0 / D));
+    for (std::size_t q = 0; q < body.table().points(); ++q) {
+      const Point<D> X = body.table().position[q].template head<D>();
+      length = std::min(length, std::pow(body.table().volume[q] / body.cloud().circumference(X), 1.0 / D));
+    }
     Eigen::VectorXd masses(static_cast<Eigen::Index>(n) * D);
     for (std::size_t i = 0; i < n; ++i) masses.segment<D>(static_cast<Eigen::Index>(i) * D).setConstant(body.masses()[i]);
     const double eigenvalue = largest_eigenvalue(masses, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& result) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <tactoid/boundary/axis_condition.hpp>
 #include <tactoid/boundary/boundary.hpp>
 #include <tactoid/boundary/essential_conditions.hpp>
 #include <tactoid/integrator/static_newton.hpp>
@@ -35,7 +36,7 @@ class StaticProblem {
       : body_(body), terms_(std::move(terms)...) {
     static_assert((BoundaryTerm<Terms, dimension> && ...), "A StaticProblem takes BoundaryTerms after its conditions.");
     std::fill(body_.velocity.begin(), body_.velocity.end(), Vector4::Zero());
-    essential_ = EssentialConditions(std::move(motions), body_.particle_values(), body_.table().particle_position,
+    essential_ = EssentialConditions(with_axis_condition(body_.cloud(), std::move(motions)), body_.particle_values(), body_.table().particle_position,
                                      body_.masses());
     fields_.prepare(body_);
     fields_.refresh(body_, 0.0);

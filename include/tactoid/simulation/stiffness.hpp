@@ -125,8 +125,10 @@ template <class Body>
         PointState<double> state;
         rows::Gradient<> du, dh;
         rows::gather(table.row(q), body.displacement.data(), du);
+        if (table.axisymmetric) rows::turn_around_axis(du);
         if constexpr (Body::has_director) {
           rows::gather(table.row(q), body.director.data(), dh);
+          if (table.axisymmetric) rows::turn_around_axis(dh);
           state.director = body.director[table.owner[q]].template head<3>();
         }
         for (int k = 0; k < 3; ++k) {
@@ -142,6 +144,7 @@ template <class Body>
           for (int i = 0; i < D; ++i) {
             left[a].row(i).setZero();
             for (int k = 0; k < D; ++k) left[a].row(i) += table.volume[q] * row[a].gradient[k] * A.row(3 * i + k);
+            if (table.axisymmetric && i == 0) left[a].row(i) += table.volume[q] * row[a].gradient[2] * A.row(8);
           }
         Eigen::MatrixXd hold;
         if (modulus > 0.0)
@@ -153,6 +156,7 @@ template <class Body>
             for (int i = 0; i < D; ++i) {
               double k = 0.0;
               for (int m = 0; m < D; ++m) k += left[a](i, 3 * j + m) * row[b].gradient[m];
+              if (table.axisymmetric && j == 0) k += left[a](i, 8) * row[b].gradient[2];
               column[i] += k;
             }
             if (modulus > 0.0) column[j] += hold(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));

@@ -20,8 +20,10 @@ struct PatchReport {
 
 /// Linear patch test of a body: the particles on the facets are moved by u = (F − 1) X, the others find their static
 /// equilibrium, which for one material at constant stress is the same affine motion. Only the first D rows and
-/// columns of F count. The body is left in that equilibrium.
-/// Throws ParameterError for a periodic body or F = 1, ComputationError where there is no equilibrium.
+/// columns of F count. The body is left in that equilibrium. In a meridian section the affine motions at constant stress are
+/// diagonal, and F₀₀ is the stretch around the axis, too.
+/// Throws ParameterError for a periodic body, F = 1, or a motion that is not axisymmetric, ComputationError where there is
+/// no equilibrium.
 template <class Body>
 [[nodiscard]] PatchReport patch_test(Body& body, const Tensor3& F, const StaticNewton& newton = {}) {
   constexpr int D = Body::dimension;
@@ -29,6 +31,8 @@ template <class Body>
   if (cloud.period.any()) throw ParameterError("patch_test: the body must not be periodic: affine motions are not.");
   Tensor3 H = Tensor3::Zero();
   H.topLeftCorner<D, D>() = F.template topLeftCorner<D, D>() - Eigen::Matrix<double, D, D>::Identity();
+  if (cloud.axisymmetric && (H(0, 1) != 0.0 || H(1, 0) != 0.0))
+    throw ParameterError("patch_test: F of an axisymmetric body must be diagonal: shear is no axisymmetric motion at constant stress.");
   if (H.isZero(0.0)) throw ParameterError("patch_test: F = 1 moves nothing.");
   std::vector<char> on_facet(body.size(), 0);
   for (const auto& facet : cloud.facets)
@@ -50,7 +54,8 @@ template <class Body>
   report.displacement_error = error / size;
 
   error = size = 0.0;
-  const Tensor3 affine = H + Tensor3::Identity();
+  Tensor3 affine = H + Tensor3::Identity();
+  if (cloud.axisymmetric) affine(2, 2) = affine(0, 0);
   const std::vector<PointSample> samples = body.sample_points();
   body.for_each_region([&](const auto& region, Index) {
     using Law = typename std::decay_t<decltype(region)>::Law;
