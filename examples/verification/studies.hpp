@@ -19,6 +19,7 @@ void energy_law(Report&, Level);
 void adhesion(Report&, Level);
 void drop(Report&, Level);
 void bouncing(Report&, Level);
+void revolution(Report&, Level);
 
 inline constexpr std::array studies{
     Study{"kernel", "interpolation on jittered clouds, rates", kernel},
@@ -35,6 +36,7 @@ inline constexpr std::array studies{
     Study{"adhesion", "Derjaguin, pull-off from DMT to JKR, Hertz", adhesion},
     Study{"drop", "Laplace pressure, Rayleigh's frequency, Lamb's damping", drop},
     Study{"bouncing", "a ball that bounces in an adhesive potential, two bodies that collide", bouncing},
+    Study{"revolution", "bodies of revolution: thick sphere, modes of a ball, ball between plates", revolution},
 };
 
 }  // namespace tactoid::verification
