@@ -25,7 +25,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-STUDIES = ["bar_hysteresis", "cell_compression", "spreading_uniform", "spreading_graded", "wavy_front"]  # in the order of the page
+STUDIES = ["bar_hysteresis", "cell_compression", "spreading_uniform", "spreading_axisymmetric", "spreading_graded", "wavy_front"]  # in the order of the page
 HEAD = """# What the studies gave
 
 Written by `/usr/bin/python3 examples/studies.py --publish` from the files of its runs, {count} runs of {minutes:.0f} processor
@@ -91,7 +91,7 @@ def main():
         text, figures = study.report(folder)
         target = (HERE if given.publish else given.out) / name
         for figure_name, figure in figures.items():
-            figure.savefig(target / f"{figure_name}.png", dpi=100)
+            figure.savefig(target / f"{figure_name}.png")
             plt.close(figure)
         page += f"\n## {study.TITLE}\n\n[Study and commands]({name}/README.md)\n\n{text.strip()}\n{failures(all_runs)}"
     target = HERE if given.publish else given.out

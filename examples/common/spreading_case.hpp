@@ -9,25 +9,26 @@
 namespace tactoid {
 
 /// The cell of the paper on its substrate: how the spreading examples and the benchmarks compose it.
-/// `substrate_law`: a law or Graded, as SpreadingParameters::substrate_law gives it.
-template <MaterialSource Law>
+/// `substrate_law`: a law or Graded, as SpreadingParameters::substrate_law gives it. D = 2: in the meridian section, with
+/// `substrate_law` a function of that place.
+template <MaterialSource Law, int D = 3>
 struct SpreadingCase {
   SpreadingParameters p;
   Law substrate_law;
 
   [[nodiscard]] auto cell() const {
-    PointCloud<3> cloud = p.cell_cloud();
+    PointCloud<D> cloud = p.cell_cloud<D>();
     Field director = p.director_field(cloud);
     return Body{"cell",
                 std::move(cloud),
-                Rkpm<3>{.support = p.support},
+                Rkpm<D>{.support = p.support},
                 p.quadrature(),
                 Materials{Region{"nucleus", p.nucleus_law()}, Region{"cytoplasm", p.cytoplasm_law()}},
                 DirectorField<>{.diffusivity = p.diffusivity, .core_size = p.core_size},
                 std::move(director)};
   }
   [[nodiscard]] auto substrate() const {
-    return Body{"substrate", p.substrate_cloud(), Rkpm<3>{.support = p.support}, p.quadrature(),
+    return Body{"substrate", p.substrate_cloud<D>(), Rkpm<D>{.support = p.support}, p.quadrature(),
                 Materials{Region{"body", substrate_law}}};
   }
   /// Everything on: both contacts, anchoring, surface tension, the fixed bottom.
@@ -35,7 +36,7 @@ struct SpreadingCase {
     auto cell_body = cell();
     auto substrate_body = substrate();
     const auto bottom =
-        select(substrate_body.cloud(), [&](const Point<3>& X) { return X[2] < -p.substrate_height * (1.0 - 1e-9); });
+        select(substrate_body.cloud(), [&](const Point<D>& X) { return X[D - 1] < -p.substrate_height * (1.0 - 1e-9); });
     return Simulation{
         Bodies{std::move(cell_body), std::move(substrate_body)},
         Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
@@ -44,5 +45,14 @@ struct SpreadingCase {
         CentralDifference{.safety = p.safety, .time_step = p.time_step}};
   }
 };
+template <MaterialSource Law>
+SpreadingCase(SpreadingParameters, Law) -> SpreadingCase<Law>;
+
+/// The same in the meridian section. Throws ParameterError for what is not axisymmetric.
+template <MaterialSource Law>
+[[nodiscard]] SpreadingCase<Law, 2> axisymmetric_case(const SpreadingParameters& p, const Law& substrate_law) {
+  p.validate_axisymmetric();
+  return {p, substrate_law};
+}
 
 }  // namespace tactoid

@@ -137,19 +137,38 @@ struct SpreadingParameters {
   /// The gauge pressure that balances the surface tension of the sphere, Pa (Young and Laplace).
   [[nodiscard]] double rest_pressure() const { return 2.0 * surface_tension / radius; }
 
-  [[nodiscard]] PointCloud<3> cell_cloud() const {
-    return turned(ball({.radius = radius,
-                        .core_radius = nucleus * radius,
-                        .core_cells = count(10, 2),
-                        .shells = count(5, 1),
-                        .center = {0.0, 0.0, radius + gap}}));
+  [[nodiscard]] Ball cell_shape() const {
+    return {.radius = radius,
+            .core_radius = nucleus * radius,
+            .core_cells = count(10, 2),
+            .shells = count(5, 1),
+            .center = {0.0, 0.0, radius + gap}};
   }
-  [[nodiscard]] PointCloud<3> substrate_cloud() const {
-    return turned(disc({.radius = substrate_radius,
-                        .height = substrate_height,
-                        .core_cells = count(21, 2),
-                        .rings = count(19, 1),
-                        .layers = count(7, 1) + 1}));
+  [[nodiscard]] Disc substrate_shape() const {
+    return {.radius = substrate_radius,
+            .height = substrate_height,
+            .core_cells = count(21, 2),
+            .rings = count(19, 1),
+            .layers = count(7, 1) + 1};
+  }
+  /// Of the cell, in 3 dimensions or in the meridian section (D = 2), whose core has an even number of cells.
+  template <int D>
+  [[nodiscard]] PointCloud<D> cell_cloud() const {
+    Ball shape = cell_shape();
+    if constexpr (D == 3) return turned(ball(shape));
+    shape.core_cells += shape.core_cells % 2;
+    return meridian(shape);
+  }
+  template <int D>
+  [[nodiscard]] PointCloud<D> substrate_cloud() const {
+    if constexpr (D == 3) return turned(disc(substrate_shape()));
+    else return meridian(substrate_shape());
+  }
+  /// What is not the same all around the axis. Throws ParameterError.
+  void validate_axisymmetric() const {
+    if (director == "random")
+      throw ParameterError("--director random is not allowed: it is not axisymmetric; use --director uniform (along the axis) or radial.");
+    if (turn != 0.0) throw ParameterError("--turn is not allowed: a meridian section cannot be turned around its axis.");
   }
 
   [[nodiscard]] PointCloud<3> turned(PointCloud<3> cloud) const {
@@ -181,9 +200,11 @@ struct SpreadingParameters {
         .density = substrate_density, .c1 = substrate_c1, .c2 = substrate_c2, .lambda = substrate_lambda};
     return {.elastic = base.scaled(factor), .a1 = viscous * a1, .a2 = viscous * a2, .a3 = a3};
   }
-  [[nodiscard]] Field director_field(const PointCloud<3>& cloud) const {
-    if (director == "uniform") return initial_director(cloud, UniformDirector(Vector3::UnitX()));
-    if (director == "radial") return initial_director(cloud, RadialDirector({0.0, 0.0, radius + gap}));
+  /// In the meridian section a uniform director is along the axis.
+  template <int D>
+  [[nodiscard]] Field director_field(const PointCloud<D>& cloud) const {
+    if (director == "uniform") return initial_director(cloud, UniformDirector(Vector3::Unit(D == 2 ? 1 : 0)));
+    if (director == "radial") return initial_director(cloud, RadialDirector(Vector3::Unit(D - 1) * (radius + gap)));
     return initial_director(cloud, RandomDirector({.correlation_length = correlation_length, .seed = seed}));
   }
   [[nodiscard]] NodalCentroids quadrature() const {

@@ -15,8 +15,10 @@
 
 namespace tactoid {
 
-/// Observes a simulation of a cell (body 0) on a substrate (body 1) and writes, in a folder, history.csv, front.csv (the
-/// shape of the front), the frames for ParaView (fields.pvd) and summary.json.
+/// Observes a simulation of a cell (body 0) on a substrate (body 1), in 3 dimensions or in a meridian section (D = 2), and
+/// writes, in a folder, history.csv, front.csv (the shape of the front), the frames for ParaView (fields.pvd) and
+/// summary.json. The columns are the same: z is along the axis, and what breaks the symmetry is zero.
+template <int D = 3>
 class SpreadingRecorder {
  public:
   /// `cutoff`: gap below which the surface counts as spread, m.
@@ -80,9 +82,9 @@ class SpreadingRecorder {
     const RegionStatistics nucleus = region_statistics(table, stress.point_effective_stress, 0);
     double largest = 0.0;
     for (double s : stress.point_effective_stress) largest = std::max(largest, s);
-    const ContactFront front = contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_, Vector3::UnitZ(), front_modes);
+    const ContactFront front = front_of(cell);
     const Motion a = motion<0>(simulation), b = motion<1>(simulation);
-    const Vector3 momentum = a.momentum + b.momentum;
+    const Vector3 momentum = in_space(a.momentum + b.momentum), center_of_mass = in_space(a.center_of_mass);
     const EnergyLedger& e = simulation.ledger();
     double smallest = std::numeric_limits<double>::infinity();
     for (double g : gaps_.gaps()) smallest = std::min(smallest, g);
@@ -94,11 +96,11 @@ class SpreadingRecorder {
              nucleus.mean,
              nucleus.max,
              largest,
-             a.center_of_mass[0],
-             a.center_of_mass[1],
-             a.center_of_mass[2],
+             center_of_mass[0],
+             center_of_mass[1],
+             center_of_mass[2],
              front.centroid[0],
-             front.centroid[1],
+             D == 2 ? 0.0 : front.centroid[1],
              e.kinetic,
              e.strain + e.stabilization,
              e.adhesion,
@@ -111,12 +113,12 @@ class SpreadingRecorder {
              momentum[2],
              e.stabilization,
              smallest,
-             front_radius(front, Vector3::Zero(), Vector3::UnitX()),
-             front_radius(front, Vector3::Zero(), -Vector3::UnitX())};
+             D == 2 ? front.radius : front_radius(front, Vector3::Zero(), Vector3::UnitX()),
+             D == 2 ? front.radius : front_radius(front, Vector3::Zero(), -Vector3::UnitX())};
     history_.write(last_);
-    std::vector<double> shape = {simulation.time(), front.center[0], front.center[1], front.radius};
-    shape.insert(shape.end(), front.modes.begin() + 1, front.modes.end());
-    shape.insert(shape.end(), front.phases.begin() + 1, front.phases.end());
+    std::vector<double> shape = {simulation.time(), front.center[0], D == 2 ? 0.0 : front.center[1], front.radius};
+    for (const auto* part : {&front.modes, &front.phases})
+      for (std::size_t m = 1; m <= front_modes; ++m) shape.push_back(m < part->size() ? (*part)[m] : 0.0);
     front_.write(shape);
   }
 
@@ -159,6 +161,13 @@ class SpreadingRecorder {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   };
 
+  [[nodiscard]] ContactFront front_of(const ParticleFields& cell) const {
+    if constexpr (D == 2) return contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_);
+    else return contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_, Vector3::UnitZ(), front_modes);
+  }
+  /// A mean vector over whole rings points along the axis, z.
+  [[nodiscard]] static Vector3 in_space(const Vector3& v) { return D == 2 ? Vector3(0.0, 0.0, v[1]) : v; }
+
   /// The frames of a former run in the same folder.
   void remove_old_frames() const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "fields")) {
@@ -193,7 +202,7 @@ class SpreadingRecorder {
   double cutoff_;
   HistoryWriter history_, front_;
   PvdSeries series_;
-  SurfaceGaps<3> gaps_;
+  SurfaceGaps<D> gaps_;
   std::vector<double> last_;
   int frame_ = 0;
   double seconds_ = 0.0;  // spent in observing and writing

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@
 
 namespace tactoid {
 
-/// A cell that spreads on a substrate, from its parameters to its results: what the spreading examples share.
+/// A cell that spreads on a substrate, from its composition to its results: what the spreading examples share.
 struct SpreadingRun {
   std::string out;             ///< folder of the results
   int threads = thread_count();
@@ -30,17 +31,18 @@ struct SpreadingRun {
     options.add("max-energy-error", &energy_limit, Range::positive(), "Relative energy error that stops the run");
   }
 
-  /// Composes both bodies, the substrate of `substrate_law` (a law or Graded), and runs to p.end_time. Writes the
-  /// effective `options`, history, frames and summary in `out`; after a breakdown, which is thrown again, too.
-  template <MaterialSource Law>
-  void operator()(const SpreadingParameters& p, const Options& options, const Law& substrate_law) const {
+  /// Composes a case, such as SpreadingCase, and runs it to its end_time. Writes the effective `options`, history, frames
+  /// and summary in `out`; after a breakdown, which is thrown again, too.
+  template <class Case>
+  void operator()(const Case& spreading, const Options& options) const {
+    const SpreadingParameters& p = spreading.p;
     set_thread_count(threads);
     const auto start = std::chrono::steady_clock::now();
-    auto simulation = SpreadingCase<Law>{p, substrate_law}.simulation();
+    auto simulation = spreading.simulation();
 
     prepare_folder(out);
     options.write_toml(std::filesystem::path(out) / "parameters.toml");
-    SpreadingRecorder recorder(out, p.bond_range);
+    SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range);
     Progress progress(p.end_time);
     fmt::print("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {} threads\n",
                simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),

@@ -22,10 +22,11 @@ int main(int argc, char** argv) {
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
-    run(p, options, Graded{[&](const Vector3& X) {
-          const double angle = std::abs(std::atan2(X[1], X[0]));  // θ, 0 … π
-          return p.substrate_law(soft + (stiff - soft) * angle / std::numbers::pi);
-        }});
+    const Graded substrate{[&](const Vector3& X) {
+      const double angle = std::abs(std::atan2(X[1], X[0]));  // θ, 0 … π
+      return p.substrate_law(soft + (stiff - soft) * angle / std::numbers::pi);
+    }};
+    run(SpreadingCase{p, substrate}, options);
     return 0;
   });
 }

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
-    run(p, options, p.substrate_law(stiffness));
+    run(SpreadingCase{p, p.substrate_law(stiffness)}, options);
     return 0;
   });
 }
