@@ -27,6 +27,7 @@ struct CompressionParameters {
   std::string method = "explicit";   ///< explicit: dynamics; static: equilibria (elastic bodies)
   double reduction = 0.5;            ///< (H₀ − H)/H₀ at the end, H the distance of the plates
   double duration = 100e-6;          ///< of the motion of the plates, s
+  double ramp = 0.1;                 ///< part of the duration in which the plates come to their speed
   double resolution = 1.0;           ///< scales the numbers of cells in each direction
   double radius = 5e-6;              ///< of the body, m
   double nucleus = 0.382;            ///< radius of the nucleus over that of the body
@@ -49,6 +50,7 @@ struct CompressionParameters {
     options.add_choice("method", &method, {"explicit", "static"}, "Dynamics, or equilibria of the elastic bodies");
     options.add("reduction", &reduction, Range::inside(0.0, 0.9), "Reduction of the height, (H0 - H)/H0, at the end");
     options.add_quantity("duration", &duration, Quantity::time, Range::positive(), "Time in which the plates move");
+    options.add("ramp", &ramp, Range::inside(0.0, 1.0), "Part of that time in which they come to their speed");
     options.add("resolution", &resolution, Range::between(0.2, 10.0), "Scales the numbers of cells in each direction");
     options.add_quantity("radius", &radius, Quantity::length, Range::positive(), "Radius of the body");
     options.add("nucleus", &nucleus, Range::inside(0.0, 1.0), "Radius of the nucleus over that of the body");
@@ -109,14 +111,13 @@ struct CompressionParameters {
 
   /// How far each plate has moved, m: smoothly from rest, then steadily.
   [[nodiscard]] double depth(double t) const {
-    const double s = std::clamp(t / duration, 0.0, 1.0), x = std::min(1.0, s / start);
-    return radius * reduction / (1.0 - 0.5 * start) * (start * (x * x * x - 0.5 * x * x * x * x) + std::max(0.0, s - start));
+    const double s = std::clamp(t / duration, 0.0, 1.0), x = std::min(1.0, s / ramp);
+    return radius * reduction / (1.0 - 0.5 * ramp) * (ramp * (x * x * x - 0.5 * x * x * x * x) + std::max(0.0, s - ramp));
   }
   [[nodiscard]] double speed(double t) const {
-    const double x = std::clamp(t / duration / start, 0.0, 1.0);
-    return radius * reduction / (1.0 - 0.5 * start) / duration * (3.0 - 2.0 * x) * x * x;
+    const double x = std::clamp(t / duration / ramp, 0.0, 1.0);
+    return radius * reduction / (1.0 - 0.5 * ramp) / duration * (3.0 - 2.0 * x) * x * x;
   }
-  static constexpr double start = 0.1;  // part of the duration in which the plates come to their speed
 };
 
 /// Particles in the plane of symmetry normal to direction k.
