@@ -9,10 +9,13 @@ TITLE = "A cell between two plates (Fig. 4)"
 NUCLEI = ["0.382", "0.618"]
 DURATIONS = ["100us", "200us", "400us", "800us"]
 ELASTIC = [[("body", "homogeneous"), ("nucleus", "0.382")]] + [[("body", "core-shell"), ("nucleus", n)] for n in NUCLEI]
+# Slow enough that the vibrations of a soft shell, which the facets excite as they touch one by one, do not show.
+SPEED = {"homogeneous": [("duration", "400us")], "core-shell": [("duration", "1600us"), ("ramp", "0.3")]}
+EXPLICIT = [[*o, *SPEED[dict(o)["body"]]] for o in ELASTIC]
 MESHES = [resolution(r) for r in (0.6, 0.8, 1.0)]
 SWEEPS = [
     ("static", "cell_compression", [("method", "static"), ("resolution", resolution(1.0)), ("samples", "25")], ELASTIC),
-    ("explicit", "cell_compression", [("resolution", resolution(1.0)), ("duration", "400us")], ELASTIC),
+    ("explicit", "cell_compression", [("resolution", resolution(1.0))], EXPLICIT),
     ("cell", "cell_compression", [("body", "cell"), ("resolution", resolution(1.0))],
      [[("nucleus", n), ("duration", d)] for n in NUCLEI for d in DURATIONS]),
     ("meshes", "cell_compression", [("nucleus", "0.382")],
@@ -42,11 +45,11 @@ def label(options):
 
 def report(folder):
     static = {label(o): Case(folder / "static", o) for o in ELASTIC}
-    explicit = {label(o): Case(folder / "explicit", o) for o in ELASTIC}
+    explicit = {label(o): Case(folder / "explicit", o) for o in EXPLICIT}
     cells = {(n, d): Case(folder / "cell", [("nucleus", n), ("duration", d)]) for n in NUCLEI for d in DURATIONS}
     text = "![Force against reduction](cell_compression/compression.png)\n\n"
-    text += ("Elastic balls: force on a plate (nN) by equilibria, and the difference of an explicit run of 400 µs (mean over ±0.01 of "
-             "the reduction):\n\n")
+    text += ("Elastic balls: force on a plate (nN) by equilibria, and the difference of an explicit run of 400 µs (core-shell: 1600 µs; mean "
+             "over ±0.01 of the reduction):\n\n")
 
     def compared(name, r):
         if np.isnan(force(static[name], r)):
