@@ -154,10 +154,13 @@ struct SpreadingParameters {
   /// Of the cell, in 3 dimensions or in the meridian section (D = 2), whose core has an even number of cells.
   template <int D>
   [[nodiscard]] PointCloud<D> cell_cloud() const {
-    Ball shape = cell_shape();
-    if constexpr (D == 3) return turned(ball(shape));
-    shape.core_cells += shape.core_cells % 2;
-    return meridian(shape);
+    if constexpr (D == 3) {
+      return turned(ball(cell_shape()));
+    } else {
+      Ball shape = cell_shape();
+      shape.core_cells += shape.core_cells % 2;
+      return meridian(shape);
+    }
   }
   template <int D>
   [[nodiscard]] PointCloud<D> substrate_cloud() const {
