@@ -43,6 +43,12 @@ struct CurvatureSurfaceTension {
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
     return integral.visit([&](const auto& s) { return area_stiffness_rate(s, body, tension); });
   }
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("normals", normals);
+    archive("areas", areas);
+    archive("curvatures", curvatures);
+  }
 
  private:
   template <int D>

@@ -125,6 +125,20 @@ class EssentialConditions {
   [[nodiscard]] const Vector3& reaction(std::size_t m) const { return reactions_[m]; }
   [[nodiscard]] const std::vector<PrescribedMotion>& motions() const { return motions_; }
 
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("forces", forces_);
+    archive("reactions", reactions_);
+    for (int c = 0; c < 3; ++c) {
+      auto& last = directions_[static_cast<std::size_t>(c)].last;
+      std::vector<Vector3> flat(last.size());
+      for (std::size_t k = 0; k < last.size(); ++k) flat[k] = {last[k].value, last[k].rate, last[k].ahead};
+      archive(c == 0 ? "last_x" : c == 1 ? "last_y" : "last_z", flat);
+      if constexpr (Archive::restoring)
+        for (std::size_t k = 0; k < last.size(); ++k) last[k] = {flat[k][0], flat[k][1], flat[k][2]};
+    }
+  }
+
   struct Condition {
     Index particle;
     std::size_t motion;

@@ -32,6 +32,8 @@ struct OnFacets {
   void add_stiffness(const ParticleFields& body, const Emit& emit) const {
     term.add_stiffness(body, emit);
   }
+  template <class Archive>
+  void state(Archive& archive) { archive.part("term", term); }
 };
 template <class Term, class Predicate>
 OnFacets(Term, Predicate) -> OnFacets<Term, Predicate>;

@@ -40,6 +40,9 @@ struct SurfaceIntegral {
     }
     return sum;
   }
+
+  template <class Archive>
+  void state(Archive& archive) { archive("value", value); }
 };
 
 namespace detail {
@@ -136,6 +139,8 @@ struct SurfaceTension {
       return sum / tension;
     });
   }
+  template <class Archive>
+  void state(Archive& archive) { archive.part("integral", integral); }
 };
 
 }  // namespace tactoid

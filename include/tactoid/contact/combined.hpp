@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -35,6 +36,11 @@ struct Combined {
   /// Rates of the parts add up: ω² of a sum of stiffnesses is at most the sum.
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return std::apply([&](const auto&... part) { return (0.0 + ... + part.stiffness_rate(a, b)); }, parts);
+  }
+
+  template <class Archive>
+  void state(Archive& archive) {
+    std::apply([&](auto&... part) { int n = 0; (archive.part("part_" + std::to_string(n++), part), ...); }, parts);
   }
 
   /// The part of type `Part`, as in `contact.get<VanDerWaals>().gaps()`.

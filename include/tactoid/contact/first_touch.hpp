@@ -27,6 +27,9 @@ struct FirstTouch {
     }
     return first;
   }
+
+  template <class Archive>
+  void state(Archive& archive) { archive("touched", touched); }
 };
 
 }  // namespace tactoid

@@ -48,6 +48,13 @@ class SurfaceGaps {
   [[nodiscard]] const FacetSurface<D>& surface() const { return surface_; }
   [[nodiscard]] const FacetSurface<D>& master() const { return master_; }
 
+  template <class Archive>
+  void state(Archive& archive) {
+    archive.part("tracker", tracker_);
+    archive("gaps", gaps_);
+    archive("normals", normals_);
+  }
+
  private:
   FacetSurface<D> surface_, master_;
   ClosestPointTracker<D> tracker_;

@@ -103,6 +103,8 @@ struct LigandReceptor {
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law(), a, b);
   }
+  template <class Archive>
+  void state(Archive& archive) { archive.part("engine", engine); }
 };
 
 }  // namespace tactoid

@@ -83,6 +83,9 @@ class RigidPass {
     }
   }
 
+  template <class Archive>
+  void state(Archive& archive) { archive("last_time", last_time_); }
+
  private:
   struct State {
     Vector4 force = Vector4::Zero();
@@ -135,6 +138,12 @@ struct OnRigid {
   [[nodiscard]] Vector3 force() const { return on_surface; }
   /// Energy between body and surface at that call, J.
   [[nodiscard]] double energy() const { return stored; }
+  template <class Archive>
+  void state(Archive& archive) {
+    archive.part("pass", pass);
+    archive("on_surface", on_surface);
+    archive("stored", stored);
+  }
 };
 
 /// A rigid plate, at rest or moving steadily, that a body is pressed or stuck to: a BoundaryTerm in 2 and 3 dimensions.
@@ -169,6 +178,8 @@ struct RigidPlate {
   }
   /// Force of the body on the plate at the last call of apply, N.
   [[nodiscard]] Vector3 force() const { return contact.force(); }
+  template <class Archive>
+  void state(Archive& archive) { archive.part("contact", contact); }
 };
 
 }  // namespace tactoid

@@ -32,6 +32,12 @@ class PerDimension {
     return std::forward<F>(f)(*std::get_if<T<3>>(&value_));
   }
 
+  /// Of what is held, where that has one.
+  template <class Archive>
+  void state(Archive& archive) {
+    if (!empty()) visit([&](auto& held) { archive.part("held", held); });
+  }
+
  private:
   void require_value() const {
     if (empty()) throw Error("A contact or boundary term was used before initialize() was called.");

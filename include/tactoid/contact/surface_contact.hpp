@@ -110,6 +110,9 @@ class ContactPass {
   [[nodiscard]] const FacetSurface<D>& master() const { return master_; }
   [[nodiscard]] const FacetQuadrature<D>& quadrature() const { return quadrature_; }
 
+  template <class Archive>
+  void state(Archive& archive) { archive.part("tracker", tracker_); }
+
  private:
   struct State {
     double force = 0.0, energy = 0.0, area_power = 0.0;
@@ -165,6 +168,12 @@ class SurfaceContactEngine {
     return forth_.visit(std::forward<F>(f));
   }
 
+  template <class Archive>
+  void state(Archive& archive) {
+    archive.part("forth", forth_);
+    archive.part("back", back_);
+  }
+
  private:
   PerDimension<ContactPass> forth_, back_;
 };
@@ -188,6 +197,8 @@ struct SurfaceContact {
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law, a, b);
   }
+  template <class Archive>
+  void state(Archive& archive) { archive.part("engine", engine); }
 };
 
 }  // namespace tactoid

@@ -105,6 +105,40 @@ class ClosestPointTracker {
   /// One entry per query point.
   [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return closest_; }
 
+  /// Where each query point is on the surface, and where everything was at the last global search.
+  template <class Archive>
+  void state(Archive& archive) {
+    using Place = Eigen::Matrix<double, D + 6, 1>;  // local, point, normal, gap
+    const std::size_t n = closest_.size();
+    std::vector<Index> facet(n);
+    std::vector<char> on_rim(n);
+    std::vector<Place> place(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const ClosestPoint<D>& c = closest_[i];
+      facet[i] = c.facet;
+      on_rim[i] = c.on_rim ? 1 : 0;
+      place[i] << Eigen::Map<const Eigen::Matrix<double, D - 1, 1>>(c.local.data()), c.point, c.normal, c.gap;
+    }
+    archive("facet", facet);
+    archive("on_rim", on_rim);
+    archive("place", place);
+    archive("asleep", asleep_);
+    archive("queries_then", queries_then_);
+    archive("nodes_then", nodes_then_);
+    archive("facet_size", facet_size_);
+    if constexpr (!Archive::restoring) return;
+    closest_.resize(facet.size());
+    for (std::size_t i = 0; i < closest_.size(); ++i) {
+      ClosestPoint<D>& c = closest_[i];
+      c.facet = facet[i];
+      c.on_rim = on_rim[i] != 0;
+      for (std::size_t k = 0; k < c.local.size(); ++k) c.local[k] = place[i][static_cast<Eigen::Index>(k)];
+      c.point = place[i].template segment<3>(D - 1);
+      c.normal = place[i].template segment<3>(D + 2);
+      c.gap = place[i][D + 5];
+    }
+  }
+
  private:
   /// A facet lies in a flat cylinder around its middle.
   struct Extent {

@@ -28,6 +28,11 @@ struct ParticlesOnSurface {
     const auto closest = tracker.closest();
     for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = closest[i].gap;
   }
+  template <class Archive>
+  void state(Archive& archive) {
+    archive.part("tracker", tracker);
+    archive("gaps", gaps);
+  }
 };
 
 /// Non-specific adhesion: a body force on every particle of A toward the nearest point of B's deformed surface,
@@ -72,6 +77,8 @@ struct VanDerWaals {
   [[nodiscard]] std::span<const double> gaps() const {
     return particles.visit([](const auto& p) { return std::span<const double>(p.gaps); });
   }
+  template <class Archive>
+  void state(Archive& archive) { archive.part("particles", particles); }
 
  private:
   template <int D>

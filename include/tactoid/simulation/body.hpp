@@ -235,6 +235,26 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return {A / V, J / V};
   }
 
+  /// What a step leaves to the next one. The reference positions tell bodies apart.
+  template <class Archive>
+  void state(Archive& archive) {
+    archive.expect("reference", table_.particle_position);
+    archive.expect("points", table_.points());
+    archive.expect("pairs", table_.pairs());
+    archive("displacement", displacement);
+    archive("velocity", velocity);
+    archive("force", force);
+    archive("chunk_stretch", chunk_stretch_);
+    if constexpr (has_director) {
+      archive("director", director);
+      archive("director_flux", director_flux);
+      archive("anchored", anchored);
+      archive("point_rate", point_rate_);
+      archive("point_volume_ratio", point_volume_ratio_);
+    }
+    for_each_region([&](auto& region, Index r) { archive.part("region_" + std::to_string(r), region); });
+  }
+
   /// Bytes of the tables and fields of the body.
   [[nodiscard]] std::size_t memory() const {
     std::size_t histories = 0;

@@ -40,6 +40,13 @@ struct BodyFields {
     }
   }
 
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("position", position);
+    archive("velocity", velocity);
+    archive("force", force);
+  }
+
   [[nodiscard]] ParticleFields view() { return {reference, position, velocity, mass, volume, force}; }
 };
 

@@ -45,6 +45,13 @@ struct ContactAnchoring {
     if (body.anchored.empty()) body.anchored.assign(body.size(), 0);
     for (Index i : touch.update(gaps.visit([](const auto& g) { return g.gaps(); }))) body.anchored[i] = 1;
   }
+  template <class Archive>
+  void state(Archive& archive) {
+    archive.part("gaps", gaps);
+    archive.part("touch", touch);
+    archive("countdown", countdown);
+    archive("fresh", fresh);
+  }
 };
 
 }  // namespace tactoid

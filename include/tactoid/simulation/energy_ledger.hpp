@@ -24,6 +24,19 @@ struct EnergyLedger {
   /// |defect| over the largest work done so far.
   [[nodiscard]] double error() const { return largest_work > 0.0 ? std::abs(defect()) / largest_work : 0.0; }
 
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("kinetic", kinetic);
+    archive("strain", strain);
+    archive("stabilization", stabilization);
+    archive("adhesion", adhesion);
+    archive("surface", surface);
+    archive("dissipated", dissipated);
+    archive("external_work", external_work);
+    archive("initial", initial);
+    archive("largest_work", largest_work);
+  }
+
   void note_scale() {
     for (const double e : {kinetic, strain, dissipated, external_work, total() - initial})
       largest_work = std::max(largest_work, std::abs(e));

@@ -15,6 +15,8 @@ namespace tactoid {
 ///   after_step(simulation)   after every step
 ///   end(simulation)          at the end of the run
 ///   last_good_state(simulation)   instead of end, when a step broke down: the state before it has been restored
+///   resume(simulation)       optional, instead of begin, where the state of a former run was restored: the observer goes on
+///                            as that run's would have, which began at simulation.run_start() and run_start_steps()
 template <class O, class System>
 concept Observer =
     (requires(O& o, System& s) {
@@ -40,6 +42,14 @@ class Every {
     start_ = simulation.time();
     count_ = 0;
     call(simulation);
+  }
+  template <class S>
+  void resume(const S& simulation) {
+    start_ = simulation.run_start();
+    count_ = 0;
+    while (next_time(simulation) <= simulation.time()) ++count_;
+    const double last = start_ + interval_ * static_cast<double>(count_);
+    called_ = simulation.time() - last < 1e-9 * interval_ ? simulation.time() : last;
   }
   template <class S>
   [[nodiscard]] double next_time(const S&) const { return start_ + interval_ * static_cast<double>(count_ + 1); }
@@ -83,6 +93,8 @@ class EverySteps {
   }
   template <class S>
   void begin(S& simulation) { function_(simulation); }
+  template <class S>
+  void resume(const S& simulation) { count_ = static_cast<long>(simulation.steps() - simulation.run_start_steps()); }
   template <class S>
   [[nodiscard]] double next_time(const S&) const { return std::numeric_limits<double>::infinity(); }
   template <class S>

@@ -6,6 +6,7 @@
 
 #include <tactoid/core/lanes.hpp>
 #include <tactoid/material/all.hpp>
+#include <tactoid/material/history.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
 
 namespace tactoid {
@@ -37,6 +38,23 @@ struct RegionLaw {
 
   [[nodiscard]] const Law& law(std::size_t q) const { return laws[graded ? q - begin : 0]; }
   [[nodiscard]] std::size_t block(std::size_t q) const { return (q - begin) / static_cast<std::size_t>(width); }
+
+  template <class Archive>
+  void state(Archive& archive) {
+    constexpr std::size_t scalars = history_size<Law>;
+    if constexpr (scalars > 0) {
+      std::vector<double> flat(histories.size() * scalars * static_cast<std::size_t>(width));
+      const auto for_each_number = [&](const auto& visit) {
+        std::size_t k = 0;
+        for (auto& history : histories)
+          for (std::size_t i = 0; i < scalars; ++i)
+            for (int l = 0; l < width; ++l) visit(flat[k++], history_scalars<Law, Scalar>(history)[i], l);
+      };
+      for_each_number([](double& number, Scalar& x, int l) { number = lane(x, l); });
+      archive("histories", flat);
+      if constexpr (Archive::restoring) for_each_number([](double& number, Scalar& x, int l) { set_lane(x, l, number); });
+    }
+  }
 
   /// `scale`, the stabilisation's factor per point of the table (empty without one), takes up how far a graded law's
   /// stabilisation is above the least of the region, which is `stabilization`.

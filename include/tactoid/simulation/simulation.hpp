@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
+#include <tactoid/core/state.hpp>
 #include <tactoid/integrator/integrator.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/body_fields.hpp>
@@ -140,7 +142,17 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void run(double until, Observers&&... observers) {
     static_assert((Observer<std::remove_cvref_t<Observers>, Simulation> && ...), "Simulation::run takes observers.");
     if (!(until >= time_) || !std::isfinite(until)) reject("Simulation.run: end time", until, "s", fmt::format("finite and not before the present time, {:g} s", time_));
-    (observers.begin(*this), ...);
+    if (!std::exchange(resumed_, false)) {
+      run_start_ = time_;
+      run_start_steps_ = steps_;
+      (observers.begin(*this), ...);
+    } else {
+      const auto resume = [&](auto& observer) {
+        if constexpr (requires { observer.resume(*this); }) observer.resume(*this);
+        else observer.begin(*this);
+      };
+      (resume(observers), ...);
+    }
     while (time_ < until) {
       // Events that coincide but for round-off are one: no step is as short as that.
       const double close = 1e-6 * (last_step_ > 0.0 ? last_step_ : largest_stable_time_step());
@@ -162,6 +174,39 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       (observers.after_step(*this), ...);
     }
     (observers.end(*this), ...);
+  }
+
+  /// When the run began, s and steps; a simulation whose state was restored goes on with the run that was saved.
+  [[nodiscard]] double run_start() const { return run_start_; }
+  [[nodiscard]] std::size_t run_start_steps() const { return run_start_steps_; }
+
+  /// Everything that the next step needs: for save_state and restore_state, in a simulation that is composed in the same
+  /// way. Then it goes on with the same bits, and the next run calls its observers when the saved run would have.
+  /// Contacts, terms and integrators take part if they have a state (core/state.hpp).
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("time", time_);
+    archive("last_step", last_step_);
+    archive("step_before", step_before_);
+    archive("steps", steps_);
+    archive("run_start", run_start_);
+    archive("run_start_steps", run_start_steps_);
+    archive("external_power", external_power_);
+    archive("dissipated_power", dissipated_power_);
+    archive.part("ledger", ledger_);
+    for_each_body([&](auto& body, std::size_t b) {
+      archive.part(body.name(), body);
+      archive.part(body.name() + "/at_particles", fields_[b]);
+      archive.part(body.name() + "/conditions", essential_[b]);
+      archive.part(body.name() + "/stable_step", stable_[b]);
+      archive(body.name() + "/term_rate", term_rates_[b]);
+    });
+    for_each_contact([&](auto& between, std::size_t n) { archive.part("contact_" + std::to_string(n), between.contact); });
+    for_each_boundary([&](auto& on, std::size_t n) {
+      if constexpr (!is_motion<decltype(on)>) archive.part("boundary_" + std::to_string(n), on.term);
+    });
+    archive.part("integrator", integrator_);
+    if constexpr (Archive::restoring) resumed_ = true;
   }
 
   // --- what an integrator uses -------------------------------------------------------------------------------
@@ -339,6 +384,9 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   double time_ = 0.0, last_step_ = 0.0, step_before_ = 0.0;
   std::size_t steps_ = 0;
   bool drifted_ = false;  // displacements have moved on, forces have not
+  double run_start_ = 0.0;
+  std::size_t run_start_steps_ = 0;
+  bool resumed_ = false;  // the state was restored: the next run goes on with the one that was saved
 };
 
 template <class... B, class... C, class... T, class I>
