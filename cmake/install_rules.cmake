@@ -15,7 +15,8 @@ set(tactoid_package_dir "${CMAKE_INSTALL_DATADIR}/cmake/tactoid")
 install(
   TARGETS tactoid
   EXPORT tactoidTargets
-  FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+  FILE_SET with_hdf5 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(
   EXPORT tactoidTargets
   NAMESPACE tactoid::
