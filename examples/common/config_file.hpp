@@ -24,20 +24,9 @@ struct ConfigEntry {
   Kind kind = Kind::text;
 };
 
-/// Reads a TOML file of `key = value` lines, without sections. Throws FileError where it cannot be read, ParameterError
-/// with file and line where it is no such file.
-[[nodiscard]] inline std::vector<ConfigEntry> read_config_file(const std::filesystem::path& path) {
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
-  if (!file) detail::fail_file("read", path, errno);
-  std::string text;
-  char buffer[4096];
-  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
-  if (std::ferror(file.get())) detail::fail_file("read", path, errno);
-
-  const std::string name = path.filename().string();
+/// Reads a TOML text of `key = value` lines, without sections. Throws ParameterError with its `name` and the line where it
+/// is no such text.
+[[nodiscard]] inline std::vector<ConfigEntry> read_config(std::string_view text, const std::string& name) {
   toml::table table;
   try {
     table = toml::parse(text, name);
@@ -63,6 +52,20 @@ struct ConfigEntry {
     }
   }
   return entries;
+}
+
+/// Of a file. Throws FileError where it cannot be read.
+[[nodiscard]] inline std::vector<ConfigEntry> read_config_file(const std::filesystem::path& path) {
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+  if (!file) detail::fail_file("read", path, errno);
+  std::string text;
+  char buffer[4096];
+  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
+  if (std::ferror(file.get())) detail::fail_file("read", path, errno);
+  return read_config(text, path.filename().string());
 }
 
 /// `text` as a TOML string.

@@ -5,6 +5,7 @@
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <nanoflann.hpp>
 #include <toml++/impl/version.h>
 
@@ -36,10 +37,11 @@ namespace tactoid {
 #endif
   return fmt::format(
       "Tactoid    {}\ncompiler   {}\nvectors    {}\nthreads    {}\nEigen      {}.{}.{}\nnanoflann  {}.{}.{}\n"
-      "fmt        {}.{}.{}\nCLI11      {}\ntoml++     {}.{}.{}\n",
+      "fmt        {}.{}.{}\nCLI11      {}\ntoml++     {}.{}.{}\nHDF5       {}.{}.{}\n",
       version, compiler, vectors, threads, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION,
       NANOFLANN_VERSION >> 8 & 15, NANOFLANN_VERSION >> 4 & 15, NANOFLANN_VERSION & 15, FMT_VERSION / 10000,
-      FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION, TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH);
+      FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION, TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH,
+      H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE);
 }
 
 }  // namespace tactoid

@@ -136,6 +136,12 @@ class Options {
     insert(std::move(entry));
   }
 
+  /// An option that names a file which brings options itself, as --config does: `read(file)` gives their text. They come
+  /// before those of --config, and these before the command line: the last one wins.
+  void add_source(std::string name, std::string type, std::function<std::string(const std::string& file)> read, std::string help) {
+    sources_.push_back({std::move(name), std::move(type), std::move(help), std::move(read)});
+  }
+
   /// Reads the command line. False where it asked for --help or --info, which are printed then: the program is done.
   [[nodiscard]] bool parse(int argc, const char* const* argv) {
     return parse(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
@@ -155,6 +161,9 @@ class Options {
     app.add_option("--config", config_files, "Read options from this file: lines `name = value`; the command line wins")
         ->type_name("FILE.toml")
         ->allow_extra_args(false);
+    std::vector<std::vector<std::string>> source_files(sources_.size());
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+      app.add_option("--" + sources_[i].name, source_files[i], sources_[i].help)->type_name(sources_[i].type)->allow_extra_args(false);
     std::vector<std::vector<std::string>> texts(entries_.size());
     std::vector<std::pair<int, int>> flags(entries_.size());
     for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -193,8 +202,19 @@ class Options {
       return false;
     }
 
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      single("--" + sources_[i].name, source_files[i]);
+      for (const std::string& file : source_files[i]) {
+        const std::string path = checked_text(file, "--" + sources_[i].name);
+        const std::string label = std::filesystem::path(path).filename().string();
+        apply(read_config(sources_[i].read(path), label), label);
+      }
+    }
     single("--config", config_files);
-    for (const std::string& file : config_files) read_file(checked_text(file, "--config"));
+    for (const std::string& file : config_files) {
+      const std::string path = checked_text(file, "--config");
+      apply(read_config_file(path), std::filesystem::path(path).filename().string());
+    }
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       const std::string name = "--" + entries_[i].name;
       single(name, texts[i]);
@@ -217,6 +237,7 @@ class Options {
     }
     return text;
   }
+  [[nodiscard]] const std::string& program() const { return program_; }
   /// Throws FileError.
   void write_toml(const std::filesystem::path& path) const { write_file(path, toml()); }
 
@@ -260,7 +281,10 @@ class Options {
       result.push_back(fmt::format("{}{}", prefix, entry.name));
       if (entry.kind == Kind::truth && !prefix.empty()) result.push_back("--no-" + entry.name);
     }
-    if (!prefix.empty()) result.insert(result.end(), {"--config", "--help", "--info"});
+    if (!prefix.empty()) {
+      for (const Source& source : sources_) result.push_back("--" + source.name);
+      result.insert(result.end(), {"--config", "--help", "--info"});
+    }
     return result;
   }
 
@@ -274,9 +298,9 @@ class Options {
                                      near.empty() ? "--help lists all." : "did you mean " + near + "?"));
   }
 
-  void read_file(const std::string& path) {
-    const std::string file = std::filesystem::path(path).filename().string();
-    for (const ConfigEntry& config : read_config_file(path)) {
+  /// Takes over the values of a file.
+  void apply(const std::vector<ConfigEntry>& values, const std::string& file) {
+    for (const ConfigEntry& config : values) {
       const auto entry =
           std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == config.key; });
       if (entry == entries_.end()) {
@@ -296,8 +320,14 @@ class Options {
     }
   }
 
+  struct Source {
+    std::string name, type, help;
+    std::function<std::string(const std::string& file)> read;
+  };
+
   std::string program_, purpose_;
   std::vector<Entry> entries_;
+  std::vector<Source> sources_;
 };
 
 }  // namespace tactoid

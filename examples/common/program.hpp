@@ -9,10 +9,13 @@
 
 #include <tactoid/core/errors.hpp>
 
+#include <common/stop_signal.hpp>
+
 namespace tactoid {
 
 /// Runs `body()` as the whole of a program: its exit status, or a sentence on the error output and the status of the
-/// failure: 2 for what the user can mend before the run (parameters, geometry, files), 3 for a computation that broke.
+/// failure: 2 for what the user can mend before the run (parameters, geometry, files), 3 for a computation that broke, 130 or
+/// 143 for one that SIGINT or SIGTERM has ended.
 template <class Body>
 int run_program(std::string_view name, const Body& body) {
   const auto report = [&](std::string_view text, int status) {
@@ -22,6 +25,8 @@ int run_program(std::string_view name, const Body& body) {
   };
   try {
     return body();
+  } catch (const Interrupted& interrupted) {
+    return report(fmt::format("ended by {}.", interrupted.name()), interrupted.status());
   } catch (const ComputationError& error) {
     return report(error.what(), 3);
   } catch (const Error& error) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,15 +22,25 @@ namespace tactoid {
 template <int D = 3>
 class SpreadingRecorder {
  public:
-  /// `cutoff`: gap below which the surface counts as spread, m.
-  SpreadingRecorder(std::filesystem::path folder, double cutoff)
+  /// `cutoff`: gap below which the surface counts as spread, m. With `resumed_at` (s) it goes on with the files of the run that is
+  /// continued from there, and awaits its state.
+  SpreadingRecorder(std::filesystem::path folder, double cutoff, std::optional<double> resumed_at = {})
       : folder_(std::move(folder)),
         cutoff_(cutoff),
-        history_(folder_ / "history.csv", columns()),
-        front_(folder_ / "front.csv", front_columns()),
+        history_(folder_ / "history.csv", columns(), resumed_at),
+        front_(folder_ / "front.csv", front_columns(), resumed_at),
         series_(folder_ / "fields.pvd") {
     prepare_folder(folder_ / "fields");
-    remove_old_frames();
+    if (resumed_at) series_.keep_until(*resumed_at);
+    else remove_old_frames();
+  }
+
+  /// What the next line and the next frame need; the recorder must have measured once.
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("last", last_);
+    archive("frame", frame_);
+    archive.part("gaps", gaps_);
   }
 
   static std::vector<std::string> columns() {
@@ -151,6 +162,16 @@ class SpreadingRecorder {
     summary.write(folder_ / "summary.json");
   }
 
+  /// Measures the gaps at the present state, as every record and frame does first.
+  template <class S>
+  void measure(S& simulation) {
+    const ParticleFields cell = simulation.template particles<0>(), substrate = simulation.template particles<1>();
+    if (gaps_.gaps().empty())
+      gaps_.initialize(simulation.template body<0>().cloud(), cell, simulation.template body<1>().cloud(), substrate);
+    else
+      gaps_.measure(cell, substrate);
+  }
+
  private:
   struct Timer {
     explicit Timer(double& sum) : sum_(sum) {}
@@ -178,15 +199,6 @@ class SpreadingRecorder {
       if ((body == "cell_" || body == "substrate_") && name.find_first_not_of("0123456789", digits) == dot)
         std::filesystem::remove(entry.path());
     }
-  }
-
-  template <class S>
-  void measure(S& simulation) {
-    const ParticleFields cell = simulation.template particles<0>(), substrate = simulation.template particles<1>();
-    if (gaps_.gaps().empty())
-      gaps_.initialize(simulation.template body<0>().cloud(), cell, simulation.template body<1>().cloud(), substrate);
-    else
-      gaps_.measure(cell, substrate);
   }
 
   template <std::size_t B, class S>

@@ -2,16 +2,19 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <type_traits>
 
 #include <fmt/format.h>
 
+#include <tactoid/output/checkpoint.hpp>
 #include <tactoid/tactoid.hpp>
 
 #include <common/options.hpp>
 #include <common/spreading_case.hpp>
 #include <common/spreading_recorder.hpp>
+#include <common/stop_signal.hpp>
 
 namespace tactoid {
 
@@ -22,8 +25,21 @@ struct SpreadingRun {
   int frames = 20;             ///< for ParaView
   int samples = 200;           ///< lines of the history
   double energy_limit = 0.1;   ///< relative error of the energy balance that stops the run
+  double checkpoint_every = 600.0;          ///< s of wall time; 0: no checkpoint at all
+  std::optional<Checkpoint> restart = {};   ///< where the run goes on
 
   void add_to(Options& options) {
+    options.add_source(
+        "restart", "FILE.h5",
+        [this, &options](const std::string& file) {
+          restart = read_checkpoint(file);
+          if (restart->program != options.program())
+            throw FileError(fmt::format("{} is a checkpoint of {}, not of {}.", in_quotes(file), restart->program, options.program()));
+          return restart->parameters;
+        },
+        "Go on where this checkpoint is, with its options");
+    options.add_quantity("checkpoint-every", &checkpoint_every, Quantity::time, Range::non_negative(),
+                         "Wall time between two checkpoints, out/checkpoint.h5; 0: none");
     options.add("out", &out, "Folder of the results");
     options.add("threads", &threads, Range::between(1, 1024), "Threads");
     options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
@@ -40,10 +56,33 @@ struct SpreadingRun {
     const auto start = std::chrono::steady_clock::now();
     auto simulation = spreading.simulation();
 
+    std::optional<double> resumed_at;
+    if (restart) {
+      StateReader(restart->state).part("simulation", simulation);
+      resumed_at = simulation.time();
+      if (p.end_time < *resumed_at)
+        throw ParameterError(fmt::format("--end-time = {:g} s is not allowed: the checkpoint is at {:g} s.", p.end_time, *resumed_at));
+    }
     prepare_folder(out);
     options.write_toml(std::filesystem::path(out) / "parameters.toml");
-    SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range);
-    Progress progress(p.end_time);
+    SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range, resumed_at);
+    if (restart) {
+      recorder.measure(simulation);
+      StateReader(restart->state).part("recorder", recorder);
+      fmt::print("going on from t = {:.6g} s, step {}\n", simulation.time(), simulation.steps());
+    }
+    const StopSignal stop;
+    auto saved = start;
+    const auto save = [&](auto& s) {
+      if (checkpoint_every == 0.0) return;
+      Checkpoint checkpoint{options.program(), options.toml(), {}};
+      StateWriter writer(checkpoint.state);
+      writer.part("simulation", s);
+      writer.part("recorder", recorder);
+      write_checkpoint(std::filesystem::path(out) / "checkpoint.h5", checkpoint);
+      saved = std::chrono::steady_clock::now();
+    };
+    Progress progress(p.end_time, simulation.time());
     fmt::print("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {} threads\n",
                simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
                1e9 * simulation.largest_stable_time_step(), thread_count());
@@ -69,11 +108,20 @@ struct SpreadingRun {
                      every_steps(10, [&](auto& s) {
                        progress.update(s.time(), s.steps());
                        watch_energy(s);
+                     }),
+                     every_steps(1, [&](auto& s) {  // the last one: the others have seen the step
+                       stop.check();
+                       if (std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() > checkpoint_every) save(s);
                      }));
+    } catch (const Interrupted&) {
+      save(simulation);
+      finish(false);
+      throw;
     } catch (const ComputationError&) {
       finish(false);
       throw;
     }
+    save(simulation);
     finish(true);
     fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps(),
                seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);

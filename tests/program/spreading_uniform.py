@@ -9,11 +9,15 @@ import math
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree as xml
+
+import h5py
 
 PROGRAM = ""
 COLUMNS = (
@@ -258,6 +262,87 @@ class BadInput(Case):
             (self.folder / "locked").mkdir(mode=0o555)
             self.refuse(*small, "--out", "locked/results", says=['"locked/results"', "denied"])
             self.refuse(*small, "--out", "locked", says=['"locked"', "denied"])
+
+
+class Restart(Case):
+    RUN = ["--gap", "1nm", "--resolution", "0.4", "--end-time", "0.5us", "--frames", "5", "--samples", "50", "--preset", "elastic"]
+
+    def interrupt(self, sent, lines, *arguments):
+        """A run that is ended by a signal as soon as its history has so many lines."""
+        with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                              env=dict(os.environ, OMP_WAIT_POLICY="passive", LC_ALL="C")) as process:
+            history = self.folder / arguments[-1] / "history.csv"
+            while not history.exists() or history.read_bytes().count(b"\n") < lines:
+                self.assertIsNone(process.poll(), "the run ended before it could be interrupted")
+                time.sleep(0.005)
+            process.send_signal(sent)
+            error = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 128 + sent, error)
+        self.assertEqual(error, f"spreading_uniform: ended by {sent.name}.\n")
+        summary = json.loads((self.folder / arguments[-1] / "summary.json").read_text())
+        self.assertFalse(summary["completed"])
+        self.check_frames(self.folder / arguments[-1])
+
+    def assert_same(self, one, two):
+        for name in ("history.csv", "front.csv", "fields.pvd"):
+            self.assertEqual((self.folder / one / name).read_bytes(), (self.folder / two / name).read_bytes(), name)
+        self.assertEqual(set(os.listdir(self.folder / one / "fields")), set(os.listdir(self.folder / two / "fields")))
+        for name in os.listdir(self.folder / one / "fields"):
+            self.assertEqual((self.folder / one / "fields" / name).read_bytes(), (self.folder / two / "fields" / name).read_bytes(), name)
+
+    def test_a_run_that_is_ended_twice_and_continued_is_the_whole_run(self):
+        self.succeed(*self.RUN, "--threads", "1", "--out", "whole")
+        self.interrupt(signal.SIGTERM, 10, *self.RUN, "--threads", "1", "--out", "parts")
+        shutil.copytree(self.folder / "parts", self.folder / "again")
+        early = "again/checkpoint.h5"
+        said = self.succeed("--restart", "parts/checkpoint.h5", "--threads", "2").stdout
+        self.assertRegex(said, r"going on from t = \S+ s, step \d+")
+        self.assert_same("whole", "parts")
+        # Ended and continued twice; and elsewhere, where only the rest is.
+        shutil.copy(self.folder / early, self.folder / "early.h5")
+        self.interrupt(signal.SIGINT, 30, "--restart", early, "--threads", "1", "--out", "again")
+        self.succeed("--restart", early, "--threads", "1", "--out", "again")
+        self.assert_same("whole", "again")
+        # Once more from the first place, over what is there by now.
+        self.succeed("--restart", "early.h5", "--out", "again")
+        self.assert_same("whole", "again")
+        self.succeed("--restart", "early.h5", "--out", "elsewhere")
+        whole, rest = (read_history(self.folder / out / "history.csv")[1] for out in ("whole", "elsewhere"))
+        self.assertLess(len(rest), len(whole))
+        self.assertEqual(rest, whole[-len(rest):])
+        # A finished run goes on, too.
+        self.succeed("--restart", "whole/checkpoint.h5", "--end-time", "0.52us", "--out", "whole")
+        self.assertAlmostEqual(read_history(self.folder / "whole/history.csv")[1][-1][0], 0.52e-6, delta=1e-15)
+
+    def test_the_checkpoint_is_read_by_python(self):
+        self.succeed(*SMALL, "--out", "out")
+        with h5py.File(self.folder / "out" / "checkpoint.h5") as file:
+            self.assertEqual(file.attrs["parameters"].decode(), (self.folder / "out" / "parameters.toml").read_text())
+            cell = file["simulation/cell"]
+            self.assertEqual(cell["displacement"].shape, cell["reference"].shape)
+            self.assertEqual(cell["displacement"].attrs["unit"], b"m")
+            self.assertAlmostEqual(file["simulation/time"][()], 0.05e-6)
+
+    def test_what_cannot_be_continued_is_refused(self):
+        self.succeed(*SMALL, "--out", "out")
+        checkpoint = self.folder / "out" / "checkpoint.h5"
+        content = checkpoint.read_bytes()
+        for name, bad, says in (("cut.h5", content[:-1000], "is a damaged checkpoint"), ("text.h5", b"nonsense", "is no checkpoint of Tactoid"),
+                                ("flipped.h5", content[:5000] + b"?" + content[5001:], "is a damaged checkpoint")):
+            (self.folder / name).write_bytes(bad)
+            result = run("--restart", name, "--out", "new", folder=self.folder)
+            self.assertEqual((result.returncode, result.stderr.count("\n")), (2, 1), result.stderr)
+            self.assertIn(says, result.stderr)
+        for arguments, says in ((["--restart", "none.h5"], "No such file"), (["--restart", checkpoint, "--end-time", "0.01us"], "the checkpoint is at"),
+                                (["--restart", checkpoint, "--resolution", "0.4"], "is of another simulation")):
+            result = run(*arguments, "--out", "new", folder=self.folder)
+            self.assertEqual((result.returncode, result.stderr.count("\n")), (2, 1), result.stderr)
+            self.assertIn(says, result.stderr)
+        self.assertFalse((self.folder / "new").exists())
+
+    def test_no_checkpoint_where_none_is_wanted(self):
+        self.succeed(*SMALL, "--checkpoint-every", "0s", "--out", "out")
+        self.assertFalse((self.folder / "out" / "checkpoint.h5").exists())
 
 
 class BrokenRun(Case):

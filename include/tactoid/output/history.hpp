@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,8 +23,10 @@ namespace tactoid {
 /// call returns. Numbers are written in the shortest form that reads back as the same double.
 class HistoryWriter {
  public:
-  /// Begins the file anew. Throws FileError; ParameterError for a column without a name, with a comma, or named twice.
-  HistoryWriter(std::filesystem::path path, std::vector<std::string> columns)
+  /// Begins the file anew; or goes on with it, if it is there, behind the last line whose first value is at most `keep_until`:
+  /// what a run wrote before the state from which it is continued. Throws FileError; ParameterError for a column without a
+  /// name, with a comma, or named twice, and where the file has other columns.
+  HistoryWriter(std::filesystem::path path, std::vector<std::string> columns, std::optional<double> keep_until = {})
       : path_(std::move(path)), columns_(std::move(columns)) {
     std::string head;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -33,9 +38,10 @@ class HistoryWriter {
           throw ParameterError(fmt::format("HistoryWriter: two columns have the name {}.", in_quotes(name)));
       head += (i == 0 ? "" : ",") + name;
     }
+    const std::string kept = keep_until && std::filesystem::exists(path_) ? lines_until(head, *keep_until) : "";
     file_.reset(std::fopen(path_.c_str(), "wb"));
     if (!file_) detail::fail_file("write", path_, errno);
-    put(head + '\n');
+    put(head + '\n' + kept);
   }
 
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
@@ -52,6 +58,19 @@ class HistoryWriter {
   }
 
  private:
+  [[nodiscard]] std::string lines_until(const std::string& head, double last) const {
+    std::ifstream file(path_, std::ios::binary);
+    if (!file) detail::fail_file("read", path_, errno);
+    std::string line, kept;
+    if (!std::getline(file, line) || line != head)
+      throw ParameterError(fmt::format("HistoryWriter: {} has other columns, and cannot be continued.", in_quotes(path_.string())));
+    while (std::getline(file, line) && !file.eof()) {  // a line without its end was cut off
+      double first = 0.0;
+      if (std::from_chars(line.data(), line.data() + line.size(), first).ec != std::errc{} || first > last) break;
+      kept += line + '\n';
+    }
+    return kept;
+  }
   void put(const std::string& line) {
     if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size() || std::fflush(file_.get()) != 0)
       detail::fail_file("write", path_, errno);

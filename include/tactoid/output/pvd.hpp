@@ -1,6 +1,8 @@
 #pragma once
 
+#include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +18,19 @@ namespace tactoid {
 class PvdSeries {
  public:
   explicit PvdSeries(std::filesystem::path path) : path_(std::move(path)) {}
+
+  /// Goes on with a series that is there: the grids up to this time (s) stay in it.
+  void keep_until(double time) {
+    std::ifstream file(path_);
+    const std::string mark = "<DataSet timestep=\"";
+    for (std::string line; std::getline(file, line);) {
+      if (!line.starts_with(mark)) continue;
+      double at = 0.0;
+      if (std::from_chars(line.data() + mark.size(), line.data() + line.size(), at).ec != std::errc{} || at > time) continue;
+      entries_ += line + '\n';
+      (void)part_number(at);
+    }
+  }
 
   /// Adds the grid `file`, a path relative to the folder of the series, at `time` (s). Grids of the same time with
   /// different names of `part` are the parts of one picture. Throws FileError.
