@@ -160,6 +160,8 @@ struct GentleStart {
     system.evaluate();
     ++taken;
   }
+  template <class Archive>
+  void state(Archive& archive) { archive("taken", taken); }
 };
 
 // --- observer ---------------------------------------------------------------------------------------------------

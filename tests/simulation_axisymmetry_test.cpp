@@ -81,6 +81,16 @@ double gradient_error(test::TestBody<2>& body, const std::function<double()>& en
   return error / size;
 }
 
+/// A rule made for planes.
+struct WithoutRings : NodalCentroids {
+  template <Kernel K>
+  [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel) const {
+    PointTable table = NodalCentroids::build(cloud, kernel);
+    for (TableEntry& entry : table.entries) entry.gradient[2] = 0.0;
+    return table;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("A meridian section has the volume and the surface of the body of revolution") {
@@ -128,6 +138,10 @@ TEST_CASE("Meridian sections that make no sense are refused") {
   PointCloud<2> endless = rectangle({.size = {1.0, 1.0}, .cells = {3, 3}, .periodic = {true, false}});
   endless.axisymmetric = true;
   CHECK_THROWS_WITH_AS(validate(endless), doctest::Contains("periodic across its axis"), GeometryError);
+  const auto compose = [] {
+    return Body{"ball", half_circle(), Rkpm<2>{}, WithoutRings{}, Materials{Region{"nucleus", NeoHookean{}}, Region{"cytoplasm", NeoHookean{}}}};
+  };
+  CHECK_THROWS_WITH_AS((void)compose(), doctest::Contains("does not support axisymmetric clouds"), ParameterError);
 }
 
 TEST_CASE("Rings pass the patch test: stretch across and along the axis") {

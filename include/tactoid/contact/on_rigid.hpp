@@ -100,6 +100,7 @@ class RigidPass {
 
 /// Contact of a body with a rigid surface under any GapLaw (per reference area), a BoundaryTerm in 2 and 3 dimensions:
 /// `OnRigid{.law = LigandReceptorLaw{}, .surface = RigidSphere{…}}`. The power of a moving surface is external power.
+/// On a meridian section the surface must be one of revolution about the same axis: a plane across it, a sphere on it.
 template <GapLaw Law = RepulsiveWall, RigidSurface Surface = RigidPlane>
 struct OnRigid {
   Law law{};

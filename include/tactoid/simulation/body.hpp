@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
@@ -88,6 +89,9 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     table_ = quadrature_.build(cloud_, kernel_);
     if (has_director && !table_.value_based())
       throw ParameterError("Body \"" + name_ + "\": a director field needs a value-based quadrature, such as NodalCentroids.");
+    if (cloud_.axisymmetric && std::all_of(table_.entries.begin(), table_.entries.end(), [](const TableEntry& e) { return e.gradient[2] == 0.0; }))
+      throw ParameterError("Body \"" + name_ + "\": its quadrature does not support axisymmetric clouds: TableEntry::gradient[2] must be the shape "
+                           "function over R there.");
     match_regions(materials, std::index_sequence_for<Ms...>{});
     particle_values_ = ParticleValues(table_.particle_values);
     assemble_masses();
