@@ -180,6 +180,14 @@ class Options {
     }
     for (const std::string& argument : arguments)
       if (argument.starts_with("--") && argument.ends_with('=')) throw ParameterError(argument + " needs a value.");
+    for (const Entry& entry : entries_) {
+      if (entry.kind != Kind::truth) continue;
+      for (const std::string& prefix : {"--" + entry.name + "=", "--no-" + entry.name + "="})
+        for (const std::string& argument : arguments)
+          if (argument.starts_with(prefix))
+            throw ParameterError(fmt::format("{} takes no value, but {} is given: write --{} or --no-{}.", prefix.substr(0, prefix.size() - 1),
+                                             in_quotes(std::string_view(argument).substr(prefix.size())), entry.name, entry.name));
+    }
     try {
       app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForHelp&) {
