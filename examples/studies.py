@@ -41,7 +41,7 @@ minutes. Every study has its folder, with its question, its commands and the com
 | 2. so does the spreading area | yes, early, on elastic substrates; no size can be given | the change differs between meshes by more than itself; 0.3 % and less with the printed constants |
 | 3. the front becomes wavy | not with the small active stress of the paper (−1 Pa): those waves are the mesh's | with −1 kPa and a director that varies in space: 4 to 5 % of the radius, the same waves on turned and finer meshes |
 | 4. the cell goes to the stiff side (Figs. 11, 12) | no | the front leads on either side in turn, by less than 1 % of its radius; the centre of mass moves by a few nm, to the soft side |
-| the axisymmetric model (Fig. 10) | not computed | |
+| the axisymmetric model (Fig. 10) | reproduced | its spreading area is that in three dimensions, between the finest of both within 4.5 % (printed) and 5.3 % (elastic) from 1 µs on, 2 % from 2 µs on; no waves, by construction |
 """
 
 

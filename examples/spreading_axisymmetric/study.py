@@ -24,6 +24,11 @@ def name(options):
     return f"{o['preset']}, stiffness {o['stiffness']}"
 
 
+def largest_difference(one, other, start):
+    """Of the spreading areas from a time on, %, of both signs."""
+    return max(abs(percent(one.at("spread_area", t), other.at("spread_area", t))) for t in np.linspace(start, 4.5e-6, 200))
+
+
 def report(folder):
     section = {(name(p), r): Case(folder / "section", [("resolution", r), *p]) for p in PRESETS for r in SECTIONS}
     body = {(name(p), r): Case(folder / "body", [("resolution", r), *p]) for p in PRESETS for r in BODIES}
@@ -38,6 +43,8 @@ def report(folder):
             rows.append([f"{time * US:g} µs", *(number(v, 4) for v in of_section + of_body),
                          f"{percent(of_section[0], of_body[0]):+.1f} %", f"{percent(of_section[-1], of_body[-1]):+.1f} %"])
         text += table(["time", *(f"section, {r}" for r in SECTIONS), *(f"body, {r}" for r in BODIES), "both at 1", "finest"], rows) + "\n"
+        largest = [largest_difference(section[name(p), SECTIONS[-1]], body[name(p), BODIES[-1]], start) for start in (1e-6, 1.5e-6, 2e-6)]
+        text += "Largest difference of the finest from 1, 1.5 and 2 µs on: " + ", ".join(f"{d:.1f} %" for d in largest) + ".\n\n"
     rows = []
     for p in PRESETS:
         for r in SECTIONS:
@@ -58,7 +65,7 @@ def draw(section, body):
     grid = figure.add_gridspec(3, 3, height_ratios=[1.0, 1.0, 1.35])
     shown = section[name(PRESETS[0]), SECTIONS[1]]
     frames = [frame for frame in read_series(f"{shown.folder}/fields.pvd") if frame[0] > 0.9e-6] if shown.completed else []
-    frames = frames[:2] + frames[2::2] if len(frames) > 6 else frames
+    frames = [frames[k] for k in np.unique(np.linspace(0, len(frames) - 1, 6).round().astype(int))] if frames else []
     cells = [Grid(parts["cell"]) for _, parts in frames[:6]]
     if cells:
         norm = scale(*cells)

@@ -57,7 +57,7 @@ def contours_figure(ladder):
     """Figs. 6 and 8: effective stress of the cells on the three substrates at one time, on the surface and in a cut."""
     shown = {s: next((f for f in frames(ladder["elastic", s]) if abs(f[0] - 3e-6) < 1e-9), None) for s in SUBSTRATES}
     shown = {s: frame for s, frame in shown.items() if frame}
-    figure = plt.figure(figsize=(9.2, 4.9), layout="constrained")
+    figure = plt.figure(figsize=(9.2, 4.9), layout="constrained", dpi=88)
     if not shown:
         return figure
     grid = figure.add_gridspec(2, 3)
