@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 from matplotlib.collections import PolyCollection
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from vtu_reader import HEXAHEDRON, QUAD
+from vtu_reader import HEXAHEDRON, QUAD, Grid
 
 UM, KPA = 1e6, 1e-3  # from SI to the units of the figures
 COLORS = plt.get_cmap("viridis")
@@ -175,3 +175,19 @@ def draw_meridian(axes, cell, substrate, norm):
                     scale=1.5 / spacing, width=0.004, headwidth=3.5)
     axes.set(xlim=(-8.6, 8.6), ylim=(low - 1.6, high + 0.4))
     axes.set_aspect("equal", adjustable="box")
+
+
+def draw_sections(figure, grid, frames, count=6):
+    """Frames (time, {part: file}) of a run, evenly chosen, as meridian sections in the first two rows of a grid of three columns."""
+    if not frames:
+        return
+    chosen = [frames[k] for k in np.unique(np.linspace(0, len(frames) - 1, min(count, len(frames))).round().astype(int))]
+    cells = [Grid(parts["cell"]) for _, parts in chosen]
+    norm = scale(*cells)
+    axes = [figure.add_subplot(grid[k // 3, k % 3]) for k in range(len(chosen))]
+    for axis, cell, (time, parts) in zip(axes, cells, chosen):
+        draw_meridian(axis, cell, Grid(parts["substrate"]), norm)
+        axis.set_title(f"{time * 1e6:.3g} µs", loc="left")
+        axis.grid(False)
+        axis.tick_params(labelsize=7)
+    colorbar(figure, norm, axes, label="effective stress (kPa)", shrink=0.8)

@@ -8,8 +8,6 @@ import argparse
 import os
 import sys
 
-import numpy as np
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 import matplotlib
 
@@ -17,27 +15,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 from plot_program import run
-from spreading_pictures import colorbar, draw_meridian, scale
-from vtu_reader import Grid, read_history, read_series
+from spreading_pictures import draw_sections
+from vtu_reader import read_history, read_series
 
 UM, US = 1e6, 1e6  # from SI to the units of the figure
-
-
-def sequence(frames, count=6):
-    """Frames of equal steps in time, without the first one: a figure, its axes for what else there is to draw."""
-    chosen = [frames[k] for k in np.unique(np.linspace(1, len(frames) - 1, min(count, len(frames) - 1)).round().astype(int))]
-    cells = [Grid(parts["cell"]) for _, parts in chosen]
-    norm = scale(*cells)
-    figure = plt.figure(figsize=(9.2, 7.0), layout="constrained")
-    grid = figure.add_gridspec(3, 3, height_ratios=[1.0, 1.0, 1.35])
-    axes = [figure.add_subplot(grid[k // 3, k % 3]) for k in range(len(chosen))]
-    for axis, cell, (time, parts) in zip(axes, cells, chosen):
-        draw_meridian(axis, cell, Grid(parts["substrate"]), norm)
-        axis.set_title(f"{time * US:.3g} µs", loc="left")
-        axis.grid(False)
-        axis.tick_params(labelsize=7)
-    colorbar(figure, norm, axes, label="effective stress (kPa)", shrink=0.8)
-    return figure, figure.add_subplot(grid[2, :2]), figure.add_subplot(grid[2, 2])
 
 
 def main():
@@ -52,7 +33,10 @@ def main():
     runs = [("meridian section", read_history(os.path.join(arguments.folder, "history.csv")))]
     if arguments.compare:
         runs.append(("three dimensions", read_history(os.path.join(arguments.compare, "history.csv"))))
-    figure, area, radius = sequence(frames)
+    figure = plt.figure(figsize=(9.2, 7.0), layout="constrained")
+    grid = figure.add_gridspec(3, 3, height_ratios=[1.0, 1.0, 1.35])
+    draw_sections(figure, grid, frames[1:])
+    area, radius = figure.add_subplot(grid[2, :2]), figure.add_subplot(grid[2, 2])
     for label, history in runs:
         area.plot(history["time"] * US, history["spread_area"] * UM**2, label=label)
         radius.plot(history["time"] * US, history["contact_radius"] * UM)

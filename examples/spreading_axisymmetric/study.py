@@ -3,9 +3,9 @@
 import numpy as np
 import matplotlib.pyplot as plt
 
-from spreading_pictures import colorbar, draw_meridian, scale
+from spreading_pictures import draw_sections
 from study_tools import KPA, UM, US, Case, number, percent, resolution, table
-from vtu_reader import Grid, read_series
+from vtu_reader import read_series
 
 TITLE = "The axisymmetric model (Fig. 10)"
 COMMON = [("end-time", "4.5us"), ("activity", "0Pa"), ("director", "radial"), ("frames", "9")]
@@ -64,18 +64,8 @@ def draw(section, body):
     figure = plt.figure(figsize=(9.2, 7.0), layout="constrained", dpi=85)
     grid = figure.add_gridspec(3, 3, height_ratios=[1.0, 1.0, 1.35])
     shown = section[name(PRESETS[0]), SECTIONS[1]]
-    frames = [frame for frame in read_series(f"{shown.folder}/fields.pvd") if frame[0] > 0.9e-6] if shown.completed else []
-    frames = [frames[k] for k in np.unique(np.linspace(0, len(frames) - 1, 6).round().astype(int))] if frames else []
-    cells = [Grid(parts["cell"]) for _, parts in frames[:6]]
-    if cells:
-        norm = scale(*cells)
-        axes = [figure.add_subplot(grid[k // 3, k % 3]) for k in range(len(cells))]
-        for axis, cell, (time, parts) in zip(axes, cells, frames):
-            draw_meridian(axis, cell, Grid(parts["substrate"]), norm)
-            axis.set_title(f"{time * US:.3g} µs", loc="left")
-            axis.grid(False)
-            axis.tick_params(labelsize=7)
-        colorbar(figure, norm, axes, label="effective stress (kPa)", shrink=0.8)
+    if shown.completed:
+        draw_sections(figure, grid, [frame for frame in read_series(f"{shown.folder}/fields.pvd") if frame[0] > 0.9e-6])
     for k, p in enumerate(PRESETS):
         axis = figure.add_subplot(grid[2, k])
         for runs, levels, style, label in ((section, SECTIONS, "-", "section"), (body, BODIES, "--", "body")):

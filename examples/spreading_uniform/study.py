@@ -9,8 +9,7 @@ from vtu_reader import Grid, read_series
 
 TITLE = "Does the stiffness of the substrate matter? (Figs. 5 to 9, claims 1 and 2)"
 PRESETS = ["elastic", "viscous/10", "printed"]
-STIFFNESS = {"elastic": ["0.5", "1", "2", "5", "10", "20", "50"], "viscous/10": ["2", "5", "10"],
-             "printed": ["0.5", "2", "5", "10", "50"]}
+STIFFNESS = {p: ["0.5", "1", "2", "5", "10", "20", "50"] for p in PRESETS}
 RESOLUTIONS = [resolution(r) for r in (0.5, 0.7, 1.0, 1.4)]
 LADDER = [[("preset", p), ("stiffness", s)] for p in PRESETS for s in STIFFNESS[p]]
 MESHES = [[("resolution", r), ("preset", p), ("stiffness", s)]

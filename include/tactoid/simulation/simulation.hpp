@@ -142,17 +142,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void run(double until, Observers&&... observers) {
     static_assert((Observer<std::remove_cvref_t<Observers>, Simulation> && ...), "Simulation::run takes observers.");
     if (!(until >= time_) || !std::isfinite(until)) reject("Simulation.run: end time", until, "s", fmt::format("finite and not before the present time, {:g} s", time_));
-    if (!std::exchange(resumed_, false)) {
+    const bool resumed = std::exchange(resumed_, false);
+    if (!resumed) {
       run_start_ = time_;
       run_start_steps_ = steps_;
-      (observers.begin(*this), ...);
-    } else {
-      const auto resume = [&](auto& observer) {
-        if constexpr (requires { observer.resume(*this); }) observer.resume(*this);
-        else observer.begin(*this);
-      };
-      (resume(observers), ...);
     }
+    (begin(observers, resumed), ...);
     while (time_ < until) {
       // Events that coincide but for round-off are one: no step is as short as that.
       const double close = 1e-6 * (last_step_ > 0.0 ? last_step_ : largest_stable_time_step());
@@ -305,6 +300,14 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
  private:
   template <class Place>
   static constexpr bool is_motion = std::is_same_v<std::decay_t<decltype(std::declval<Place>().term)>, PrescribedMotion>;
+
+  /// Begins an observer, or lets it go on with the run whose state was restored.
+  template <class O>
+  void begin(O& observer, [[maybe_unused]] bool resumed) {
+    if constexpr (requires { observer.resume(*this); })
+      if (resumed) return observer.resume(*this);
+    observer.begin(*this);
+  }
 
   template <class F>
   void for_each_contact(const F& f) {
