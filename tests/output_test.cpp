@@ -228,6 +228,38 @@ TEST_CASE("a history is on the disc line by line, at full precision") {
   CHECK_FALSE(fs::exists(scratch.path / "b.csv"));
 }
 
+TEST_CASE("a history and a series are continued behind a time") {
+  const Scratch scratch;
+  const fs::path csv = scratch.path / "h.csv", pvd = scratch.path / "fields.pvd";
+  {
+    HistoryWriter history(csv, {"time", "area"});
+    PvdSeries series(pvd);
+    for (const double t : {0.1, 0.2, 0.3}) {
+      history.write(std::vector<double>{t, 1.0});
+      series.add(t, "a.vtu", "a");
+      series.add(t, "b.vtu", "b");
+    }
+  }
+  const std::string lines = read(csv), frames = read(pvd);
+  std::ofstream(csv, std::ios::app) << "0.4,1";  // cut off
+  {
+    HistoryWriter history(csv, {"time", "area"}, 0.2);
+    CHECK(read(csv) == "time,area\n0.1,1\n0.2,1\n");
+    PvdSeries series(pvd);
+    series.keep_until(0.2);
+    history.write(std::vector<double>{0.3, 1.0});
+    series.add(0.3, "a.vtu", "a");
+    series.add(0.3, "b.vtu", "b");
+  }
+  CHECK(read(csv) == lines);
+  CHECK(read(pvd) == frames);
+  CHECK(message<ParameterError>([&] { HistoryWriter(csv, {"time", "radius"}, 0.2); }) ==
+        "HistoryWriter: \"" + csv.string() + "\" has other columns, and cannot be continued.");
+  CHECK(read(csv) == lines);
+  const HistoryWriter none(scratch.path / "new.csv", {"time"}, 0.2);
+  CHECK(read(scratch.path / "new.csv") == "time\n");
+}
+
 TEST_CASE("a summary is JSON, in the order of its keys") {
   const Scratch scratch;
   Summary summary;

@@ -138,6 +138,15 @@ TEST_CASE("Meridian sections that make no sense are refused") {
   PointCloud<2> endless = rectangle({.size = {1.0, 1.0}, .cells = {3, 3}, .periodic = {true, false}});
   endless.axisymmetric = true;
   CHECK_THROWS_WITH_AS(validate(endless), doctest::Contains("periodic across its axis"), GeometryError);
+  PointCloud<2> nearly = half_circle();
+  for (Point<2>& X : nearly.positions)
+    if (X[0] == 0.0) X[0] = 1e-22;
+  CHECK_THROWS_WITH_AS(validate(nearly), doctest::Contains("so near the axis"), GeometryError);
+  test::TestBody<2> ball(half_circle());
+  RigidPlate<> across_nothing{.point = {0.0, 0.0, 0.0}, .normal = Vector3::UnitX()};
+  CHECK_THROWS_WITH_AS(across_nothing.initialize(ball.cloud, ball.fields()), doctest::Contains("surface of revolution"), ParameterError);
+  BodyForce<> outward{.acceleration = Vector3(1.0, 0.0, 0.0)};
+  CHECK_THROWS_WITH_AS(outward.initialize(ball.cloud, ball.fields()), doctest::Contains("along its axis"), ParameterError);
   const auto compose = [] {
     return Body{"ball", half_circle(), Rkpm<2>{}, WithoutRings{}, Materials{Region{"nucleus", NeoHookean{}}, Region{"cytoplasm", NeoHookean{}}}};
   };
@@ -403,4 +412,8 @@ TEST_CASE("A free ball of revolution breathes in tune, keeps its energy and stay
     scale += body.masses()[i] * std::abs(body.velocity[i][1]);
   }
   CHECK(std::abs(momentum) < 1e-11 * scale);
+  const Motion whole = motion<0>(simulation);
+  CHECK(whole.center_of_mass[0] == 0.0);
+  CHECK(whole.angular_momentum.norm() == 0.0);
+  CHECK(std::abs(whole.center_of_mass[1]) < 1e-9 * radius);
 }

@@ -143,9 +143,10 @@ class SpreadingRecorder {
     write<1>(simulation, "substrate_" + number + ".vtu", {});
   }
 
-  /// The final values under the names of the history, what the run took, and whether it came to its end.
+  /// The final values under the names of the history, what the run took (a continued one: since then, for `steps_taken`), and
+  /// whether it came to its end.
   template <class S>
-  void write_summary(S& simulation, double wall_seconds, bool completed) const {
+  void write_summary(S& simulation, std::size_t steps_taken, double wall_seconds, bool completed) const {
     Summary summary;
     const std::vector<std::string> names = columns();
     for (std::size_t i = 0; i < names.size(); ++i) summary.set(names[i], last_[i]);
@@ -154,7 +155,7 @@ class SpreadingRecorder {
     summary.set("particles_cell", simulation.template body<0>().size());
     summary.set("particles_substrate", simulation.template body<1>().size());
     summary.set("pairs", simulation.pairs());
-    const double visits = static_cast<double>(simulation.steps()) * static_cast<double>(simulation.pairs());
+    const double visits = static_cast<double>(steps_taken) * static_cast<double>(simulation.pairs());
     summary.set("ns_per_pair", visits > 0.0 ? 1e9 * (wall_seconds - seconds_) / visits : 0.0);
     summary.set("threads", thread_count());
     summary.set("version", version);

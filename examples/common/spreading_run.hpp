@@ -64,13 +64,14 @@ struct SpreadingRun {
         throw ParameterError(fmt::format("--end-time = {:g} s is not allowed: the checkpoint is at {:g} s.", p.end_time, *resumed_at));
     }
     prepare_folder(out);
-    options.write_toml(std::filesystem::path(out) / "parameters.toml");
     SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range, resumed_at);
     if (restart) {
       recorder.measure(simulation);
       StateReader(restart->state).part("recorder", recorder);
       fmt::print("going on from t = {:.6g} s, step {}\n", simulation.time(), simulation.steps());
     }
+    options.write_toml(std::filesystem::path(out) / "parameters.toml");
+    const std::size_t first_step = simulation.steps();
     const StopSignal stop;
     auto saved = start;
     const auto save = [&](auto& s) {
@@ -100,13 +101,13 @@ struct SpreadingRun {
     };
     const auto finish = [&](bool completed) {
       progress.finish();
-      recorder.write_summary(simulation, seconds() - setup, completed);
+      recorder.write_summary(simulation, simulation.steps() - first_step, seconds() - setup, completed);
     };
     try {
       simulation.run(p.end_time, every(p.end_time / samples, [&](auto& s) { recorder.record(s); }),
                      every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
                      every_steps(10, [&](auto& s) {
-                       progress.update(s.time(), s.steps());
+                       progress.update(s.time(), s.steps() - first_step);
                        watch_energy(s);
                      }),
                      every_steps(1, [&](auto& s) {  // the last one: the others have seen the step
@@ -123,7 +124,7 @@ struct SpreadingRun {
     }
     save(simulation);
     finish(true);
-    fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps(),
+    fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps() - first_step,
                seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);
   }
 };

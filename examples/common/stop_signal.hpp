@@ -20,7 +20,7 @@ class StopSignal {
     received_ = 0;
     struct sigaction action {};
     action.sa_handler = [](int signal) { received_ = signal; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // a file that is being written is finished
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, &interrupt_);
     sigaction(SIGTERM, &action, &terminate_);

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <tactoid/contact/all.hpp>
@@ -38,6 +38,7 @@ struct BellBonds {
     require_non_negative("BellBonds.density", density, "1/m^2");
     require_non_negative("BellBonds.stiffness", stiffness, "N/m");
     require_non_negative("BellBonds.length", length, "m");
+    require_positive("BellBonds.capture", capture, "m");
     require_non_negative("BellBonds.on_rate", on_rate, "1/s");
     require_non_negative("BellBonds.off_rate", off_rate, "1/s");
     require_positive("BellBonds.slip_force", slip_force, "N");
@@ -73,7 +74,7 @@ struct BellBonds {
 
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time) {
     gaps.measure(a, b);
-    const double step = time - last_time;
+    const double step = std::max(0.0, time - last_time);  // after a step that broke down, time has gone back
     last_time = time;
     total_force = 0.0;
     TermEnergy energy;

@@ -15,7 +15,8 @@ namespace tactoid {
 ///     gravity; the energy −Σ m b·x is stored
 ///   BodyForce{.acceleration = [](const Vector3& X, double t) { … }}
 ///     b(X, t) at reference positions X (m) and times t (s); its power is external power
-/// Components beyond the dimension of the body are ignored.
+/// Components beyond the dimension of the body are ignored. In a meridian section (1) is along the axis, and (0) away from it:
+/// a constant acceleration has none there.
 template <class Acceleration = Vector3>
 struct BodyForce {
   static constexpr bool constant = std::convertible_to<Acceleration, Vector3>;
@@ -33,8 +34,11 @@ struct BodyForce {
   }
 
   template <int D>
-  void initialize(const PointCloud<D>&, const ParticleFields&) {
+  void initialize(const PointCloud<D>& cloud, const ParticleFields&) {
     validate();
+    if constexpr (constant)
+      if (cloud.axisymmetric && Vector3(acceleration)[0] != 0.0)
+        throw ParameterError("BodyForce.acceleration of an axisymmetric body must be along its axis, (0, b, 0).");
     dimension = D;
   }
 

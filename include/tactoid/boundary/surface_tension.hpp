@@ -102,8 +102,8 @@ template <int D>
 
 /// Surface tension as the gradient of the surface energy σ₀ A (plane: σ₀ times the length, per thickness): the force at
 /// a particle is −σ₀ ∂A/∂x, with A integrated over the bilinear facets by 2×2 Gauss points. In the limit it is the
-/// traction −σ₀ κ n of Zeng and Li, Soft Matter 2012, 8, 5765, eqn (17). Exactly conservative: net force and torque are
-/// zero to round-off. A BoundaryTerm in 2 and 3 dimensions.
+/// traction −σ₀ κ n of Zeng and Li, Soft Matter 2012, 8, 5765, eqn (17). Exactly conservative: net force (of rings: along the axis) and torque
+/// are zero to round-off. A BoundaryTerm in 2 and 3 dimensions.
 struct SurfaceTension {
   double tension = 0.072e-3;                 ///< σ₀, N/m
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()

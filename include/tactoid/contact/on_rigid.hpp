@@ -100,7 +100,8 @@ class RigidPass {
 
 /// Contact of a body with a rigid surface under any GapLaw (per reference area), a BoundaryTerm in 2 and 3 dimensions:
 /// `OnRigid{.law = LigandReceptorLaw{}, .surface = RigidSphere{…}}`. The power of a moving surface is external power.
-/// On a meridian section the surface must be one of revolution about the same axis: a plane across it, a sphere on it.
+/// On a meridian section the surface must be one of revolution about the same axis: a plane across it, a sphere on it; else
+/// ParameterError.
 template <GapLaw Law = RepulsiveWall, RigidSurface Surface = RigidPlane>
 struct OnRigid {
   Law law{};
@@ -118,6 +119,11 @@ struct OnRigid {
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
     validate();
+    if (cloud.axisymmetric) {
+      const Vector3 normal = surface.at(Vector3(0.0, cloud.positions[0][1], 0.0), 0.0).normal;
+      if (std::hypot(normal[0], normal[2]) > 1e-9)
+        throw ParameterError("OnRigid.surface of an axisymmetric body must be a surface of revolution about its axis, which is (0, 1, 0).");
+    }
     pass.emplace<D>().initialize(cloud, body, points_per_direction);
   }
   TermEnergy apply(const ParticleFields& body, double time) {

@@ -52,6 +52,7 @@ class ClosestPointTracker {
       sum += extent[f].radius;
     }
     facet_size_ = 2.0 * sum / static_cast<double>(count);
+    reach_ = reach;
     closest_.assign(queries.size(), {});
     asleep_.assign(queries.size(), 0);
     queries_then_.assign(queries.begin(), queries.end());
@@ -92,7 +93,7 @@ class ClosestPointTracker {
   void update(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
               double reach = std::numeric_limits<double>::infinity()) {
     const double allowed = search_after * facet_size_;
-    if (closest_.size() != queries.size() || !(motion(surface, queries, x) <= allowed)) {
+    if (closest_.size() != queries.size() || reach > reach_ || !(motion(surface, queries, x) <= allowed)) {
       search(surface, queries, x, reach);
       return;
     }
@@ -126,6 +127,7 @@ class ClosestPointTracker {
     archive("queries_then", queries_then_);
     archive("nodes_then", nodes_then_);
     archive("facet_size", facet_size_);
+    archive("reach", reach_);
     if constexpr (!Archive::restoring) return;
     closest_.resize(facet.size());
     for (std::size_t i = 0; i < closest_.size(); ++i) {
@@ -224,6 +226,7 @@ class ClosestPointTracker {
   std::vector<char> asleep_;         // too far away to matter before the next global search
   Field queries_then_, nodes_then_;  // where everything was at the last global search
   double facet_size_ = 0.0;
+  double reach_ = 0.0;  // of the last global search
 };
 
 }  // namespace tactoid

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -36,10 +37,14 @@ void validate(const PointCloud<D>& cloud) {
   if (cloud.axisymmetric) {
     if (D != 2) throw GeometryError(fmt::format("A cloud of {} dimensions cannot be axisymmetric: only one of 2 is a meridian section.", D));
     if (cloud.period[0] > 0.0) throw GeometryError("An axisymmetric cloud cannot be periodic across its axis.");
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      if (cloud.positions[i][0] < 0.0)
-        throw GeometryError(fmt::format("Particle {} at {} of an axisymmetric cloud lies beyond the axis X = 0.", i,
-                                        describe<D>(cloud.positions[i])));
+    double widest = 0.0;
+    for (const Point<D>& X : cloud.positions) widest = std::max(widest, X[0]);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const double R = cloud.positions[i][0];
+      if (R < 0.0 || (R > 0.0 && R < 1e-9 * widest))
+        throw GeometryError(fmt::format("Particle {} at {} of an axisymmetric cloud lies {}.", i, describe<D>(cloud.positions[i]),
+                                        R < 0.0 ? "beyond the axis X = 0" : "so near the axis that X = 0 must be meant: write that"));
+    }
   }
   if (cloud.cell_regions.size() != cloud.cells.size())
     throw GeometryError(fmt::format("The point cloud has {} cells but {} entries in cell_regions.", cloud.cells.size(),

@@ -202,11 +202,12 @@ namespace detail {
   for (const auto& [a, b] : surface.facets) {
     const double ga = gaps[a] - cutoff, gb = gaps[b] - cutoff;
     if (ga >= 0.0 && gb >= 0.0) continue;
-    const double cut = ga * gb < 0.0 ? ga / (ga - gb) : 0.0;
+    const bool crosses = (ga < 0.0) != (gb < 0.0);
+    const double cut = crosses ? ga / (ga - gb) : 0.0;
     const double crossing = (1.0 - cut) * position[a][0] + cut * position[b][0];
     const double from = ga < 0.0 ? position[a][0] : crossing, to = gb < 0.0 ? position[b][0] : crossing;
     front.area += std::numbers::pi * (to * to - from * from);  // facets that face the substrate run outward
-    if (ga * gb < 0.0 && crossing > front.radius) {
+    if (crosses && crossing > front.radius) {
       front.radius = crossing;
       height = (1.0 - cut) * position[a][1] + cut * position[b][1];
     }

@@ -41,11 +41,16 @@ struct Motion {
   return motion(body.mass, body.reference, displacement, body.velocity);
 }
 
-/// Of body N of a simulation, at the present instant.
+/// Of body N of a simulation, at the present instant. Of a body of revolution: over whole rings, along the axis alone.
 template <std::size_t N, class S>
 [[nodiscard]] Motion motion(const S& simulation) {
   const auto& body = simulation.template body<N>();
-  return motion(body.masses(), body.table().particle_position, body.displacement, simulation.template velocity<N>());
+  Motion m = motion(body.masses(), body.table().particle_position, body.displacement, simulation.template velocity<N>());
+  if (body.table().axisymmetric) {
+    m.momentum[0] = m.center_of_mass[0] = 0.0;
+    m.angular_momentum.setZero();
+  }
+  return m;
 }
 
 }  // namespace tactoid

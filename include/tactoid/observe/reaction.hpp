@@ -14,7 +14,8 @@ struct Reactions {
 };
 
 /// Reactions of all prescribed motions of body N of a simulation, at the beginning of its last step (that is when the
-/// force acts that brings the body to the prescribed place at the end of the step); zero before the first step.
+/// force acts that brings the body to the prescribed place at the end of the step); zero before the first step. Of a body of
+/// revolution: sums over whole rings, in which (0) is the radial part; the axis is the last condition.
 ///
 ///   simulation.run(5_us, every(0.1_us, [](auto& s) { fmt::print("{}\n", reactions<1>(s).total[2]); }));
 template <std::size_t N, class S>

@@ -153,7 +153,7 @@ inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint
   AtomicFile out(path);
   out.write(detail::checkpoint_head(image));
   out.write(image);
-  out.commit();
+  out.commit(true);
 }
 
 /// Reads a checkpoint. Throws FileError, with the path and one reason, for a file that cannot be read, is no checkpoint, is of

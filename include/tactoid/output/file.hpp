@@ -46,8 +46,9 @@ class AtomicFile {
   }
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  void commit() {
-    const bool flushed = std::fflush(file_) == 0;
+  /// With `to_disc` the content is on the disc before it takes the place of a former file, should the power fail.
+  void commit(bool to_disc = false) {
+    const bool flushed = std::fflush(file_) == 0 && (!to_disc || ::fsync(::fileno(file_)) == 0);
     const int flush_error = errno;
     const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
     const int error = flushed ? errno : flush_error;

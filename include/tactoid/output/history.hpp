@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -38,10 +39,11 @@ class HistoryWriter {
           throw ParameterError(fmt::format("HistoryWriter: two columns have the name {}.", in_quotes(name)));
       head += (i == 0 ? "" : ",") + name;
     }
-    const std::string kept = keep_until && std::filesystem::exists(path_) ? lines_until(head, *keep_until) : "";
-    file_.reset(std::fopen(path_.c_str(), "wb"));
+    // What is kept is never lost: the file is then replaced as a whole.
+    if (keep_until) write_file(path_, head + '\n' + lines_until(head, *keep_until));
+    file_.reset(std::fopen(path_.c_str(), keep_until ? "ab" : "wb"));
     if (!file_) detail::fail_file("write", path_, errno);
-    put(head + '\n' + kept);
+    if (!keep_until) put(head + '\n');
   }
 
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
@@ -59,6 +61,8 @@ class HistoryWriter {
 
  private:
   [[nodiscard]] std::string lines_until(const std::string& head, double last) const {
+    std::error_code none;
+    if (!std::filesystem::exists(path_, none) || std::filesystem::file_size(path_, none) == 0) return "";
     std::ifstream file(path_, std::ios::binary);
     if (!file) detail::fail_file("read", path_, errno);
     std::string line, kept;

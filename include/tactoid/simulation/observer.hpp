@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <limits>
 #include <utility>
@@ -45,11 +46,13 @@ class Every {
   }
   template <class S>
   void resume(const S& simulation) {
+    // An event that differs from the present by round-off has been.
     start_ = simulation.run_start();
+    const double now = simulation.time(), close = 1e-9 * interval_;
     count_ = 0;
-    while (next_time(simulation) <= simulation.time()) ++count_;
+    while (next_time(simulation) <= now + close) ++count_;
     const double last = start_ + interval_ * static_cast<double>(count_);
-    called_ = simulation.time() - last < 1e-9 * interval_ ? simulation.time() : last;
+    called_ = std::abs(now - last) <= close ? now : last;
   }
   template <class S>
   [[nodiscard]] double next_time(const S&) const { return start_ + interval_ * static_cast<double>(count_ + 1); }

@@ -190,11 +190,11 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     archive("dissipated_power", dissipated_power_);
     archive.part("ledger", ledger_);
     for_each_body([&](auto& body, std::size_t b) {
-      archive.part(body.name(), body);
-      archive.part(body.name() + "/at_particles", fields_[b]);
-      archive.part(body.name() + "/conditions", essential_[b]);
-      archive.part(body.name() + "/stable_step", stable_[b]);
-      archive(body.name() + "/term_rate", term_rates_[b]);
+      const std::string name = "body_" + std::to_string(b);
+      archive.part(name, body);
+      archive.part(name + "/at_particles", fields_[b]);
+      archive.part(name + "/conditions", essential_[b]);
+      archive(name + "/term_rate", term_rates_[b]);
     });
     for_each_contact([&](auto& between, std::size_t n) { archive.part("contact_" + std::to_string(n), between.contact); });
     for_each_boundary([&](auto& on, std::size_t n) {

@@ -66,13 +66,6 @@ class StableStep {
     return step;
   }
 
-  template <class Archive>
-  void state(Archive& archive) {
-    archive("ratio", ratio_);
-    archive("elastic", elastic_);
-    archive("viscous", viscous_);
-  }
-
  private:
   /// Of velocities, by viscosity and by the damping of the stabilisation, m²/s.
   template <class Region>
