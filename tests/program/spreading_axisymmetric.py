@@ -28,7 +28,8 @@ class Axisymmetric(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, True)
 
     def run_program(self, out, *arguments, program=0, status=0):
-        result = subprocess.run([PROGRAMS[program], "--threads=1", *arguments, f"--out={self.folder / out}"], capture_output=True,
+        threads = [] if any(a.startswith("--threads") for a in arguments) else ["--threads=1"]
+        result = subprocess.run([PROGRAMS[program], *threads, *arguments, f"--out={self.folder / out}"], capture_output=True,
                                 text=True, timeout=300, env=dict(os.environ, OMP_WAIT_POLICY="passive"))
         self.assertEqual(result.returncode, status, result.stderr)
         return result
@@ -48,7 +49,10 @@ class Axisymmetric(unittest.TestCase):
         self.assertLess(abs(section["com_z"][-1] - body["com_z"][-1]), 0.02e-6)
         for name in ("external_work", "kinetic_energy"):
             self.assertLess(abs(section[name][-1] / body[name][-1] - 1.0), 0.05, name)
-        np.testing.assert_allclose(section["contact_radius"][-5:] ** 2 * np.pi, section["spread_area"][-5:], rtol=0.05)
+        # The front encloses the area, and pockets that do not touch.
+        enclosed = section["contact_radius"][-5:] ** 2 * np.pi
+        self.assertTrue(np.all(section["spread_area"][-5:] <= enclosed * (1 + 1e-12)))
+        self.assertTrue(np.all(section["spread_area"][-5:] > 0.7 * enclosed))
         for name in ("com_x", "com_y", "momentum_x", "front_modulation"):
             self.assertFalse(np.any(section[name]), name)
         self.assertLess(section["energy_error"][-1], 0.02)
