@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <tactoid/core/errors.hpp>
 #include <tactoid/geometry/facets.hpp>
 
 namespace tactoid {

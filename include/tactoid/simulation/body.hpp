@@ -162,9 +162,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       chunk_stretch_[c] = 0.0;
       chunk_failure_[c] = no_failure;
       visit(chunk.region, [&](auto& region) {
-        if constexpr (always_needs_rate<std::decay_t<decltype(region)>>)
-          pass<true>(region, chunk, c, time_step, advance);
-        else if (needs_rate(region))
+        if (needs_rate(region))
           pass<true>(region, chunk, c, time_step, advance);
         else
           pass<false>(region, chunk, c, time_step, advance);
@@ -347,12 +345,9 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return scale;
   }
 
-  /// Whatever the parameters: the loop without rates is then not compiled.
-  template <class Region>
-  static constexpr bool always_needs_rate = uses_rate<typename Region::Law> || has_director;
   template <class Region>
   [[nodiscard]] static bool needs_rate(const Region& region) {
-    return always_needs_rate<Region> || region.stabilization.modulus * region.stabilization.damping_time > 0.0;
+    return uses_rate<typename Region::Law> || has_director || region.stabilization.modulus * region.stabilization.damping_time > 0.0;
   }
 
   /// What a particle's motion is for the force loop: u alone, or u and v side by side.
