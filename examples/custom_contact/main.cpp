@@ -11,7 +11,7 @@ using namespace tactoid;
 
 namespace {
 
-constexpr double width = 2_um, height = 1_um, speed = 0.1, end = 1.5_us;  // pulled at `speed`, m/s
+constexpr double width = 2_um, height = 1_um, speed = 0.1, end = 1.0_us;  // pulled at `speed`, m/s
 
 struct Pull {
   double peak = 0.0, peak_time = 0.0;  ///< largest force, N, and when
@@ -23,7 +23,7 @@ struct Pull {
 template <class Expected>
 Pull pull(const BellBonds& bonds, const Expected& expected) {
   const auto block = [](const char* name, double z) {
-    return Body{name, box({.size = {width, width, height}, .cells = {4, 4, 3}, .origin = {0.0, 0.0, z}}), Rkpm<3>{}, NodalCentroids{},
+    return Body{name, box({.size = {width, width, height}, .cells = {3, 3, 2}, .origin = {0.0, 0.0, z}}), Rkpm<3>{}, NodalCentroids{},
                 Materials{Region{"body", NeoHookean::from_young(1e9, 0.3)}}};
   };
   Body lower = block("lower", -height), upper = block("upper", bonds.length);
