@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cerrno>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,16 +53,7 @@ struct ConfigEntry {
 
 /// Of a file. Throws FileError where it cannot be read.
 [[nodiscard]] inline std::vector<ConfigEntry> read_config_file(const std::filesystem::path& path) {
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
-  if (!file) detail::fail_file("read", path, errno);
-  std::string text;
-  char buffer[4096];
-  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
-  if (std::ferror(file.get())) detail::fail_file("read", path, errno);
-  return read_config(text, path.filename().string());
+  return read_config(read_file(path), path.filename().string());
 }
 
 /// `text` as a TOML string.

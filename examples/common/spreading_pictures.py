@@ -177,11 +177,16 @@ def draw_meridian(axes, cell, substrate, norm):
     axes.set_aspect("equal", adjustable="box")
 
 
+def evenly(items, count):
+    """So many of a list, the first and the last among them; all where there are fewer."""
+    return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, min(count, len(items))).round().astype(int))]
+
+
 def draw_sections(figure, grid, frames, count=6):
     """Frames (time, {part: file}) of a run, evenly chosen, as meridian sections in the first two rows of a grid of three columns."""
     if not frames:
         return
-    chosen = [frames[k] for k in np.unique(np.linspace(0, len(frames) - 1, min(count, len(frames))).round().astype(int))]
+    chosen = evenly(frames, count)
     cells = [Grid(parts["cell"]) for _, parts in chosen]
     norm = scale(*cells)
     axes = [figure.add_subplot(grid[k // 3, k % 3]) for k in range(len(chosen))]

@@ -3,7 +3,7 @@
 import numpy as np
 import matplotlib.pyplot as plt
 
-from spreading_pictures import colorbar, draw_cut, draw_scene, scale, view
+from spreading_pictures import colorbar, draw_cut, draw_scene, evenly, scale, view
 from study_tools import KPA, UM, US, Case, number, percent, resolution, table
 from vtu_reader import Grid, read_series
 
@@ -78,8 +78,7 @@ def contours_figure(ladder):
 
 def sequence_figure(case):
     """Fig. 9: the cell in time, with its director."""
-    shown = [frame for frame in frames(case) if frame[0] > 0.4e-6]
-    shown = [shown[k] for k in np.unique(np.linspace(0, len(shown) - 1, 6).round().astype(int))] if shown else []
+    shown = evenly([frame for frame in frames(case) if frame[0] > 0.4e-6], 6)
     figure = plt.figure(figsize=(9.2, 4.9), layout="constrained", dpi=78)
     if not shown:
         return figure

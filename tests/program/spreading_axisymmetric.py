@@ -3,7 +3,6 @@
     python3 spreading_axisymmetric.py SPREADING_AXISYMMETRIC SPREADING_UNIFORM [name of a test ...]
 """
 
-import csv
 import json
 import os
 import pathlib
@@ -17,7 +16,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples" / "common"))
-from vtu_reader import QUAD, Grid
+from vtu_reader import QUAD, Grid, read_history
 
 PROGRAMS = []
 
@@ -35,9 +34,7 @@ class Axisymmetric(unittest.TestCase):
         return result
 
     def history(self, out):
-        with open(self.folder / out / "history.csv", newline="") as file:
-            rows = list(csv.reader(file))
-        return dict(zip(rows[0], np.array(rows[1:], dtype=float).T))
+        return read_history(self.folder / out / "history.csv")
 
     def test_spreads_as_the_body_in_three_dimensions_does(self):
         near = ["--gap=20nm", "--resolution=0.5", "--end-time=1us", "--frames=2", "--samples=20", "--activity=0", "--preset=elastic"]

@@ -3,7 +3,6 @@
     python3 spreading_graded.py SPREADING_GRADED SPREADING_UNIFORM [name of a test ...]
 """
 
-import csv
 import os
 import pathlib
 import shutil
@@ -15,7 +14,7 @@ import unittest
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples" / "common"))
-from vtu_reader import Grid
+from vtu_reader import Grid, read_history
 
 PROGRAMS = []
 NEAR = ["--gap=1nm", "--resolution=0.4", "--end-time=0.2us", "--frames=1", "--samples=4", "--threads=1", "--preset=elastic"]
@@ -33,9 +32,7 @@ class Graded(unittest.TestCase):
         return result
 
     def history(self, out):
-        with open(self.folder / out / "history.csv", newline="") as file:
-            rows = list(csv.reader(file))
-        return dict(zip(rows[0], np.array(rows[1:], dtype=float).T))
+        return read_history(self.folder / out / "history.csv")
 
     def test_equal_sides_are_the_uniform_substrate(self):
         self.run_program(PROGRAMS[0], "graded", "--soft=5", "--stiff=5")

@@ -4,13 +4,10 @@
 //   find_package(HDF5 REQUIRED COMPONENTS C)
 //   target_link_libraries(my_program PRIVATE tactoid::tactoid hdf5::hdf5)
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -160,18 +157,8 @@ inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint
 /// another format, or is damaged.
 [[nodiscard]] inline Checkpoint read_checkpoint(const std::filesystem::path& path) {
   using detail::Hdf5, detail::hdf5_succeeded;
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   const auto refuse = [&](std::string_view why) { throw FileError(fmt::format("{} {}.", in_quotes(path.string()), why)); };
-  std::string bytes;
-  {
-    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
-    if (!file) detail::fail_file("read", path, errno);
-    std::vector<char> buffer(std::size_t{1} << 16);
-    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), file.get())) bytes.append(buffer.data(), count);
-    if (std::ferror(file.get())) detail::fail_file("read", path, errno);
-  }
+  std::string bytes = read_file(path);  // HDF5 takes it as if it might change it
   const std::string_view mark = "Tactoid checkpoint, format ";
   if (!std::string_view(bytes).starts_with(mark)) refuse("is no checkpoint of Tactoid");
   const std::string_view format = std::string_view(bytes).substr(mark.size(), bytes.substr(0, 64).find('\n') - mark.size());
