@@ -206,7 +206,9 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         const std::size_t q = region.begin + i;
         if (i % std::size_t(Region::width) != 0) return;
         const std::size_t last = std::min(region.end, q + std::size_t(Region::width));
-        auto state = block_state<true>(region, q, last);
+        BlockGradients<Region::width> gradients;
+        gather_block<true>(q, last, gradients);
+        auto state = block_state<true, typename Region::Scalar>(q, last, gradients);
         auto history = region.histories[region.block(q)];
         state.time_step = 0.0;
         const auto response = respond(region.law(q), state, history);
@@ -350,57 +352,53 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return uses_rate<typename Region::Law> || has_director || region.stabilization.modulus * region.stabilization.damping_time > 0.0;
   }
 
-  /// What a particle's motion is for the force loop: u alone, or u and v side by side.
   template <bool Rate>
-  static constexpr int lanes = Rate ? 8 : 4;
-  template <bool Rate>
-  [[nodiscard]] const rows::Values<lanes<Rate>>* motion() const {
+  [[nodiscard]] const rows::MotionOf<Rate>* motion() const {
     if constexpr (Rate) return motion_.data();
     else return displacement.data();
   }
   void pack_motion() {
     motion_.resize(size());
-    parallel_for(size(), [&](std::size_t i) { motion_[i] << displacement[i], velocity[i]; });
+    parallel_for(size(), [&](std::size_t i) {
+      quad(motion_[i].displacement) = quad(displacement[i].data());
+      quad(motion_[i].velocity) = quad(velocity[i].data());
+    });
   }
 
-  /// Gathered gradients of the fields at one point.
-  template <bool Rate>
-  struct PointGradients {
-    rows::Gradient<lanes<Rate>> motion;
-    rows::Gradient<> director;
+  /// Gradients of the fields at the points of a block, which has as many as a law has lanes.
+  template <int W>
+  struct BlockGradients {
+    rows::Gradient motion[W], rate[W], director[W];
   };
 
-  template <bool Rate>
-  void gather_point(std::size_t q, PointGradients<Rate>& g) const {
-    const auto row = table_.row(q);
-    if constexpr (has_director) rows::gather(row, motion<Rate>(), director.data(), g.motion, g.director);
-    else rows::gather(row, motion<Rate>(), g.motion);
-    if constexpr (dimension == 2)
-      if (table_.axisymmetric) {
-        rows::turn_around_axis(g.motion);
-        if constexpr (has_director) rows::turn_around_axis(g.director);
-      }
-  }
-
-  template <bool Rate, class T>
-  static void set_point(PointState<T>& state, const PointGradients<Rate>& g, const Vector4* h, int l) {
-    for (int K = 0; K < 3; ++K)
-      for (int i = 0; i < 3; ++i) {
-        set_lane(state.deformation_gradient(i, K), l, g.motion.column[K][i] + (i == K ? 1.0 : 0.0));
-        if constexpr (Rate) set_lane(state.deformation_rate(i, K), l, g.motion.column[K][4 + i]);
-        if constexpr (has_director) set_lane(state.director_gradient(i, K), l, g.director.column[K][i]);
-      }
-    if constexpr (has_director)
-      for (int i = 0; i < 3; ++i) set_lane(state.director(i), l, (*h)[i]);
-  }
-
-  template <bool Rate, class Region>
-  auto block_state(const Region&, std::size_t begin, std::size_t end) const {
-    PointState<typename Region::Scalar> state;
+  template <bool Rate, int W>
+  void gather_block(std::size_t begin, std::size_t end, BlockGradients<W>& g) const {
     for (std::size_t q = begin; q < end; ++q) {
-      PointGradients<Rate> g;
-      gather_point<Rate>(q, g);
-      set_point<Rate>(state, g, has_director ? &director[table_.owner[q]] : nullptr, static_cast<int>(q - begin));
+      const auto row = table_.row(q);
+      const std::size_t l = q - begin;
+      if constexpr (has_director) rows::gather(row, motion_.data(), director.data(), g.motion[l], g.rate[l], g.director[l]);
+      else if constexpr (Rate) rows::gather(row, motion_.data(), g.motion[l], g.rate[l]);
+      else rows::gather(row, displacement.data(), g.motion[l]);
+      if constexpr (dimension == 2)
+        if (table_.axisymmetric) {
+          rows::turn_around_axis(g.motion[l]);
+          rows::turn_around_axis(g.rate[l]);
+          rows::turn_around_axis(g.director[l]);
+        }
+    }
+  }
+
+  /// What the laws are told about a block. Lanes beyond its last point are at rest.
+  template <bool Rate, class T, int W>
+  PointState<T> block_state(std::size_t begin, std::size_t end, const BlockGradients<W>& g) const {
+    PointState<T> state;
+    rows::to_lanes(g.motion, state.deformation_gradient);
+    for (int i = 0; i < 3; ++i) state.deformation_gradient(i, i) += T(1.0);
+    if constexpr (Rate) rows::to_lanes(g.rate, state.deformation_rate);
+    if constexpr (has_director) {
+      rows::to_lanes(g.director, state.director_gradient);
+      for (std::size_t q = begin; q < end; ++q)
+        for (int i = 0; i < 3; ++i) set_lane(state.director(i), static_cast<int>(q - begin), director[table_.owner[q]][i]);
     }
     return state;
   }
@@ -412,30 +410,32 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     constexpr std::size_t W = Region::width;
     const double kappa = table_.stabilization_scale.empty() ? 0.0 : region.stabilization.modulus;
     const double tau = region.stabilization.damping_time;
-    thread_local Field held;  // forces of the pairs of a row, until they are scattered
+    thread_local std::vector<Quad> held;  // forces of the pairs of a row, until they are scattered
     held.resize(std::max(held.size(), longest_row_));
     BodyTotals totals;
     double stretch = 0.0;
     for (std::size_t first = chunk.begin; first < chunk.end; first += W) {
       const std::size_t last = std::min(chunk.end, first + W);
-      PointState<T> state;
+      BlockGradients<W> gradients;
+      gather_block<Rate>(first, last, gradients);
+      PointState<T> state = block_state<Rate, T>(first, last, gradients);
       state.time_step = time_step;
-      PointGradients<Rate> gradients[W];
-      for (std::size_t q = first; q < last; ++q) {
-        gather_point<Rate>(q, gradients[q - first]);
-        set_point<Rate>(state, gradients[q - first], has_director ? &director[table_.owner[q]] : nullptr,
-                        static_cast<int>(q - first));
-      }
       auto history = region.histories[region.block(first)];
       const Response<T> response = respond(region.law(first), state, history);
       const Inversion<T> F = invert(state.deformation_gradient);
       if (advance) region.advanced[region.block(first)] = history;
-      const T bound = largest_eigenvalue_bound<T>(F.inverse * F.inverse.transpose());
-      Tensor<T> flux_h;
+      const Tensor<T> inverse_C = F.inverse * F.inverse.transpose();
+      const T bound = largest_eigenvalue_bound<T>(inverse_C);
+
+      double volume[W] = {};
+      for (std::size_t q = first; q < last; ++q) volume[q - first] = table_.volume[q];
+      rows::Gradient flux[W], flux_h[W];
+      rows::to_points(response.stress, volume, flux);
       if constexpr (has_director) {
         const Tensor<T> middle = state.deformation_gradient - state.deformation_rate * T(0.5 * time_step);
         const Tensor<T> A = Director::rate_operator(velocity_gradient(state.deformation_rate, inverse(middle)));
-        flux_h = state.director_gradient * (F.inverse * F.inverse.transpose()) * F.determinant;
+        const Tensor<T> diffusion = state.director_gradient * inverse_C * F.determinant;
+        rows::to_points(diffusion, volume, flux_h);
         for (std::size_t q = first; q < last; ++q) {
           for (int a = 0; a < 9; ++a) point_rate_[q](a % 3, a / 3) = lane(A(a % 3, a / 3), int(q - first));
           point_volume_ratio_[q] = lane(F.determinant, int(q - first));
@@ -443,42 +443,54 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       }
       for (std::size_t q = first; q < last; ++q) {
         const int l = static_cast<int>(q - first);
-        const double V = table_.volume[q], J = lane(F.determinant, l);
+        const double V = volume[l], J = lane(F.determinant, l);
         if (!(J > 0.0) || !std::isfinite(J)) chunk_failure_[c] = std::min(chunk_failure_[c], q);
         stretch = std::max(stretch, point_scale_[q] * lane(bound, l));
         totals.strain_energy += V * lane(response.energy, l);
         totals.dissipated_power += V * lane(response.dissipated_power, l);
         totals.active_power += V * lane(response.active_power, l);
-        rows::Gradient<> flux;  // components beyond the dimension are no unknowns, whatever the stress
-        for (int K = 0; K < dimension; ++K)
-          for (int i = 0; i < dimension; ++i) flux.column[K][i] = V * lane(response.stress(i, K), l);
-        if constexpr (dimension == 2)
-          if (table_.axisymmetric) flux.column[2][0] = V * lane(response.stress(2, 2), l);  // the stretch around the axis is u_R/R
+        restrict_to_dimension(flux[l]);
         const auto row = table_.row(q);
         if (q + W < chunk.end) rows::prefetch(table_.row(q + W));
+        std::size_t bonds = 0;
         if (kappa > 0.0) {
-          const auto weights = table_.bonds(q);
-          const auto power = rows::stabilize(row, weights, table_.owner[q], kappa * table_.stabilization_scale[q], tau, table_.period,
-                                             table_.particle_position.data(), motion<Rate>(), gradients[l].motion,
-                                             held.data(), force.data(), flux);
+          const rows::StabilizedPoint point{row, table_.bonds(q), table_.owner[q], kappa * table_.stabilization_scale[q], tau};
+          const auto power = stabilize<Rate>(point, gradients.motion[l], gradients.rate[l], held.data(), flux[l]);
           totals.stabilization_energy += power.energy;
           totals.dissipated_power += power.dissipated;
-          rows::scatter(row, flux, std::span(held).first(weights.size()), force.data());
-        } else {
-          rows::scatter(row, flux, force.data());
+          bonds = point.weights.size();
         }
+        const auto forces_of_bonds = std::span<const Quad>(held).first(bonds);
         if constexpr (has_director) {
-          rows::Gradient<> h;
-          for (int K = 0; K < 3; ++K)
-            for (int i = 0; i < 3; ++i) h.column[K][i] = V * lane(flux_h(i, K), l);
           if constexpr (dimension == 2)
-            if (table_.axisymmetric) rows::turn_back(h);
-          rows::scatter(row, h, director_flux.data());
+            if (table_.axisymmetric) rows::turn_back(flux_h[l]);
+          rows::scatter(row, flux[l], forces_of_bonds, force.data(), flux_h[l], director_flux.data());
+        } else {
+          rows::scatter(row, flux[l], forces_of_bonds, force.data());
         }
       }
     }
     chunk_totals_[c] += totals;
     chunk_stretch_[c] = std::max(chunk_stretch_[c], stretch);
+  }
+
+  template <bool Rate>
+  rows::StabilizationPower stabilize(const rows::StabilizedPoint& point, const rows::Gradient& du, const rows::Gradient& dv,
+                                     Quad* held, rows::Gradient& flux) {
+    const Vector4* X = table_.particle_position.data();
+    if (table_.period.any()) return rows::stabilize<true, Rate>(point, table_.period, X, motion<Rate>(), du, dv, held, force.data(), flux);
+    return rows::stabilize<false, Rate>(point, table_.period, X, motion<Rate>(), du, dv, held, force.data(), flux);
+  }
+
+  /// Components beyond the dimension are no unknowns, whatever the stress; but the stretch around an axis is u_R/R.
+  void restrict_to_dimension([[maybe_unused]] rows::Gradient& flux) const {
+    if constexpr (dimension < 3) {
+      const double around = table_.axisymmetric ? flux.column[2][2] : 0.0;
+      for (int K = 0; K < 3; ++K)
+        for (int i = 0; i < 3; ++i)
+          if (i >= dimension || K >= dimension) flux.column[K][i] = 0.0;
+      flux.column[2][0] = around;
+    }
   }
 
   /// Upper bound of the largest eigenvalue of a symmetric tensor, exact where two eigenvalues are equal:
@@ -500,7 +512,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::tuple<RegionLaw<Ms>...> laws_;
   std::vector<double> masses_, volumes_;
   std::vector<double> point_scale_;  // wave_numbers()
-  std::vector<rows::Values<8>> motion_;  // displacement and velocity, packed for the force loop
+  std::vector<rows::Motion> motion_;  // displacement and velocity, packed for the force loop
   std::size_t longest_row_ = 0;
   std::vector<BodyTotals> chunk_totals_;
   std::vector<double> chunk_stretch_;

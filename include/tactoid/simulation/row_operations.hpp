@@ -1,112 +1,158 @@
 #pragma once
 
 #include <cmath>
+#include <span>
+#include <type_traits>
 
+#include <tactoid/core/lanes.hpp>
+#include <tactoid/core/quad.hpp>
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/quadrature/point_table.hpp>
 
 /// What happens per pair of a quadrature point and a particle. Everything in this file is the hot path: fixed
-/// sizes, contiguous rows, no branch that depends on data. A particle's values are four lanes (a padded vector) or eight
-/// (displacement and velocity side by side), which one load brings; rows have an even length, and two pairs are kept
-/// in flight, so that sums do not wait for each other.
+/// sizes, contiguous rows, no branch that depends on data. A padded vector is a register (core/quad.hpp), and each loop
+/// holds no more of them than a machine with sixteen has: what does not fit goes through memory for every pair.
 namespace tactoid::rows {
 
-/// N values of a particle: a padded vector, or two.
-template <int N>
-using Values = Eigen::Matrix<double, N, 1>;
+/// What a particle does, side by side: one line of the cache.
+struct alignas(64) Motion {
+  double displacement[4];
+  double velocity[4];
+};
+
+/// What the force loop knows of a particle's motion: u and v, or u alone where no rate is needed.
+template <bool Rate>
+using MotionOf = std::conditional_t<Rate, Motion, Vector4>;
+[[nodiscard]] inline const double* displacement(const Motion& motion) { return motion.displacement; }
+[[nodiscard]] inline const double* displacement(const Vector4& u) { return u.data(); }
 
 /// Columns of a referential gradient: column[K] = ∂f/∂X_K.
-template <int N = 4>
 struct Gradient {
-  Values<N> column[3] = {Values<N>::Zero(), Values<N>::Zero(), Values<N>::Zero()};
+  Quad column[3] = {};
 };
+
+[[gnu::always_inline]] inline void add_outer(Gradient& sum, const Quad& f, const double (&gradient)[3]) {
+  sum.column[0] += gradient[0] * f;
+  sum.column[1] += gradient[1] * f;
+  sum.column[2] += gradient[2] * f;
+}
 
 /// In a meridian section the third column of a gathered gradient is f/R. The parts of ∂f/∂X around the axis, where the unit
 /// vectors turn, are made of it: (−f_θ, 0, f_R)/R, with the third component θ around the axis.
-template <int N>
-inline void turn_around_axis(Gradient<N>& df) {
-  for (int half = 0; half < N; half += 4) {
-    const double f_r = df.column[2][half], f_theta = df.column[2][half + 2];
-    df.column[2][half] = -f_theta;
-    df.column[2][half + 1] = 0.0;
-    df.column[2][half + 2] = f_r;
-  }
+inline void turn_around_axis(Gradient& df) {
+  const Quad f = df.column[2];
+  df.column[2] = Quad{-f[2], 0.0, f[0], 0.0};
 }
 /// The transpose, for a flux that is scattered: what acts around the axis on f_R and f_θ.
-inline void turn_back(Gradient<>& flux) {
-  const Vector4 around = flux.column[2];
-  flux.column[2] = Vector4(around[2], 0.0, -around[0], 0.0);
+inline void turn_back(Gradient& flux) {
+  const Quad around = flux.column[2];
+  flux.column[2] = Quad{around[2], 0.0, -around[0], 0.0};
 }
 
-// The loops below work on local copies: what a store to a force may have changed, a compiler must load anew. (A copy by
-// assignment is a load; the copy constructor would go through the stack.)
-
-/// ∂f/∂X at a point: Σ_I f_I ⊗ G_qI.
-template <int N>
-inline void gather(std::span<const TableEntry> row, const Values<N>* f, Gradient<N>& df) {
-  Gradient<N> even, odd;
+/// ∂f/∂X at a point: Σ_I f_I ⊗ G_qI. Two sums are kept in flight, so that they do not wait for each other.
+inline void gather(std::span<const TableEntry> row, const Vector4* f, Gradient& df) {
+  Gradient even, odd;
   for (std::size_t k = 0; k < row.size(); k += 2) {
     const TableEntry &a = row[k], &b = row[k + 1];
-    Values<N> fa, fb;
-    fa = f[a.particle], fb = f[b.particle];
-    for (int K = 0; K < 3; ++K) {
-      even.column[K] += a.gradient[K] * fa;
-      odd.column[K] += b.gradient[K] * fb;
-    }
+    add_outer(even, quad(f[a.particle].data()), a.gradient);
+    add_outer(odd, quad(f[b.particle].data()), b.gradient);
   }
   for (int K = 0; K < 3; ++K) df.column[K] = even.column[K] + odd.column[K];
 }
 
-/// Two fields in one sweep.
-template <int N, int M>
-inline void gather(std::span<const TableEntry> row, const Values<N>* f, const Values<M>* g, Gradient<N>& df,
-                   Gradient<M>& dg) {
-  Gradient<N> f_even, f_odd;
-  Gradient<M> g_even, g_odd;
-  for (std::size_t k = 0; k < row.size(); k += 2) {
-    const TableEntry &a = row[k], &b = row[k + 1];
-    Values<N> fa, fb;
-    Values<M> ga, gb;
-    fa = f[a.particle], fb = f[b.particle], ga = g[a.particle], gb = g[b.particle];
-    for (int K = 0; K < 3; ++K) {
-      f_even.column[K] += a.gradient[K] * fa;
-      g_even.column[K] += a.gradient[K] * ga;
-      f_odd.column[K] += b.gradient[K] * fb;
-      g_odd.column[K] += b.gradient[K] * gb;
+/// The gradients of displacement and velocity in one sweep.
+inline void gather(std::span<const TableEntry> row, const Motion* motion, Gradient& du, Gradient& dv) {
+  Gradient u, v;
+  for (const TableEntry& entry : row) {
+    const Motion& m = motion[entry.particle];
+    add_outer(u, quad(m.displacement), entry.gradient);
+    add_outer(v, quad(m.velocity), entry.gradient);
+  }
+  du = u, dv = v;
+}
+
+/// And of the director.
+inline void gather(std::span<const TableEntry> row, const Motion* motion, const Vector4* director, Gradient& du, Gradient& dv,
+                   Gradient& dh) {
+  Gradient u, v, h;
+  for (const TableEntry& entry : row) {
+    const Motion& m = motion[entry.particle];
+    add_outer(u, quad(m.displacement), entry.gradient);
+    add_outer(v, quad(m.velocity), entry.gradient);
+    add_outer(h, quad(director[entry.particle].data()), entry.gradient);
+  }
+  du = u, dv = v, dh = h;
+}
+
+/// Gradients of W points as one tensor of lanes: A(i, K) holds ∂f_i/∂X_K of all of them.
+template <int W>
+inline void to_lanes(const Gradient (&points)[W], Tensor<Lanes<W>>& A) {
+  static_assert(W % 4 == 0);
+  for (int K = 0; K < 3; ++K)
+    for (int l = 0; l < W; l += 4) {
+      Quad x = points[l].column[K], y = points[l + 1].column[K], z = points[l + 2].column[K], w = points[l + 3].column[K];
+      transpose(x, y, z, w);
+      quad(A(0, K).lane.data() + l) = x;
+      quad(A(1, K).lane.data() + l) = y;
+      quad(A(2, K).lane.data() + l) = z;
     }
+}
+inline void to_lanes(const Gradient (&points)[1], Tensor<double>& A) {
+  for (int K = 0; K < 3; ++K)
+    for (int i = 0; i < 3; ++i) A(i, K) = points[0].column[K][i];
+}
+
+/// The other way, and times the points' volumes: column K of point l is volume[l] A_·K.
+template <int W>
+inline void to_points(const Tensor<Lanes<W>>& A, const double (&volume)[W], Gradient (&points)[W]) {
+  for (int K = 0; K < 3; ++K)
+    for (int l = 0; l < W; l += 4) {
+      const Quad V = quad(volume + l);
+      Quad x = V * quad(A(0, K).lane.data() + l), y = V * quad(A(1, K).lane.data() + l), z = V * quad(A(2, K).lane.data() + l);
+      Quad w = {};
+      transpose(x, y, z, w);
+      points[l].column[K] = x;
+      points[l + 1].column[K] = y;
+      points[l + 2].column[K] = z;
+      points[l + 3].column[K] = w;
+    }
+}
+inline void to_points(const Tensor<double>& A, const double (&volume)[1], Gradient (&points)[1]) {
+  for (int K = 0; K < 3; ++K) points[0].column[K] = volume[0] * Quad{A(0, K), A(1, K), A(2, K), 0.0};
+}
+
+/// f ← f − Σ_K flux_K G_K − held: what the stress columns V_q P_·K and a force of its own do to the particle of a pair.
+[[gnu::always_inline]] inline void subtract(double* f, const TableEntry& entry, const Gradient& flux) {
+  quad(f) -= entry.gradient[0] * flux.column[0] + entry.gradient[1] * flux.column[1] + entry.gradient[2] * flux.column[2];
+}
+[[gnu::always_inline]] inline void subtract(double* f, const TableEntry& entry, const Gradient& flux, const Quad& held) {
+  quad(f) -= entry.gradient[0] * flux.column[0] + entry.gradient[1] * flux.column[1] + entry.gradient[2] * flux.column[2] + held;
+}
+
+/// f_I ← f_I − Σ_K flux_K G_qI,K, and − held for the first pairs, which have a force of their own.
+inline void scatter(std::span<const TableEntry> row, const Gradient& flux, std::span<const Quad> held, Vector4* f) {
+  const Gradient local = flux;  // what a store to a force may have changed, a compiler must load anew
+  for (std::size_t k = 0; k < held.size(); ++k) subtract(f[row[k].particle].data(), row[k], local, held[k]);
+  for (std::size_t k = held.size(); k < row.size(); ++k) subtract(f[row[k].particle].data(), row[k], local);
+}
+
+/// The same, and the flux of the director in the same sweep.
+inline void scatter(std::span<const TableEntry> row, const Gradient& flux, std::span<const Quad> held, Vector4* f,
+                    const Gradient& director_flux, Vector4* h) {
+  const Gradient local = flux, local_h = director_flux;
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    subtract(f[row[k].particle].data(), row[k], local, held[k]);
+    subtract(h[row[k].particle].data(), row[k], local_h);
   }
-  for (int K = 0; K < 3; ++K) {
-    df.column[K] = f_even.column[K] + f_odd.column[K];
-    dg.column[K] = g_even.column[K] + g_odd.column[K];
+  for (std::size_t k = held.size(); k < row.size(); ++k) {
+    subtract(f[row[k].particle].data(), row[k], local);
+    subtract(h[row[k].particle].data(), row[k], local_h);
   }
-}
-
-/// Σ_K flux_K G_qI,K: what the stress columns V_q P_·K do to the particle of a pair.
-[[nodiscard]] inline Vector4 contracted(const TableEntry& entry, const Gradient<>& flux) {
-  Vector4 sum = entry.gradient[0] * flux.column[0];
-  sum += entry.gradient[1] * flux.column[1];
-  sum += entry.gradient[2] * flux.column[2];
-  return sum;
-}
-
-/// f_I ← f_I − Σ_K flux_K G_qI,K.
-inline void scatter(std::span<const TableEntry> row, const Gradient<>& flux, Vector4* f) {
-  const Gradient<> local = flux;
-  for (const TableEntry& entry : row) f[entry.particle] -= contracted(entry, local);
-}
-
-/// The same with a force held for each of the first pairs: f_I ← f_I − held − Σ_K flux_K G_qI,K.
-inline void scatter(std::span<const TableEntry> row, const Gradient<>& flux, std::span<const Vector4> held, Vector4* f) {
-  const Gradient<> local = flux;
-  for (std::size_t k = 0; k < held.size(); ++k) f[row[k].particle] -= contracted(row[k], local) + held[k];
-  for (std::size_t k = held.size(); k < row.size(); ++k) f[row[k].particle] -= contracted(row[k], local);
 }
 
 /// Asks for a row that will be needed soon, so that it comes from memory while other rows are computed.
 inline void prefetch(std::span<const TableEntry> row) {
-#if defined(__GNUC__)
   for (std::size_t k = 0; k < row.size(); k += 2) __builtin_prefetch(row.data() + k);
-#endif
 }
 
 /// Energy and dissipated power of the stabilisation of one point.
@@ -115,71 +161,64 @@ struct StabilizationPower {
   double dissipated = 0.0;
 };
 
-/// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
-///   r_J = u_J − u_I − (F_q − 1) ΔX_J,   energy ½ κ Σ_J w_J |r_J|²,   force from κ w_J (r_J + τ ṙ_J).
-/// over the `weights` of the first entries of the row. Writes the force of each of these pairs to `held`, adds the
-/// owner's to f, and subtracts from `flux` the part that acts through F_q. `motion` holds u of the particles, or (u, v) where the stabilisation is damped, and `gradient` its gradient.
-/// Without periodic directions r_J = (u_J − H X_J) − (u_I − H X_I), which saves the differences of positions.
-template <bool Periodic, int N>
-StabilizationPower stabilize(std::span<const TableEntry> row, std::span<const float> weights, Index owner, double kappa,
-                             double tau, const Vector3& period,
-                             const Vector4* X, const Values<N>* motion, const Gradient<N>& gradient, Vector4* held,
-                             Vector4* f, Gradient<>& flux) {
-  const Vector4 Xi = X[owner];
-  const Gradient<N> H = gradient;
-  Values<N> origin = motion[owner];
-  if constexpr (!Periodic)
-    for (int K = 0; K < 3; ++K) origin -= Xi[K] * H.column[K];
+/// A point whose pairs are stabilised.
+struct StabilizedPoint {
+  std::span<const TableEntry> row;
+  std::span<const float> weights;  ///< w_J, of the first entries of the row
+  Index owner;                     ///< I
+  double kappa;                    ///< κ, N/m
+  double tau;                      ///< τ, s
+};
 
-  struct Sums {
-    Values<N> force = Values<N>::Zero(), energy = Values<N>::Zero(), moment[3] = {force, force, force};
-  };
-  const auto visit = [&](const TableEntry& entry, float weight, Sums& sums, Vector4& pair_force) {
-    const double w = kappa * static_cast<double>(weight);
-    const double* XJ = X[entry.particle].data();
+/// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
+///   r_J = u_J − u_I − H ΔX_J,  H = F_q − 1,   energy ½ κ Σ_J w_J |r_J|²,   force from κ w_J (r_J + τ ṙ_J).
+/// Writes the force of each of these pairs to `held`, adds the owner's to f, and subtracts from `flux` the part that acts
+/// through F_q. `periodic` directions take the nearest images. Without them r_J = (u_J − H X_J) − (u_I − H X_I), which saves
+/// the differences of positions.
+template <bool Periodic, bool Rate>
+StabilizationPower stabilize(const StabilizedPoint& point, const Vector3& period, const Vector4* X, const MotionOf<Rate>* motion,
+                             const Gradient& du, [[maybe_unused]] const Gradient& dv, Quad* held, Vector4* f, Gradient& flux) {
+  const double* XI = X[point.owner].data();
+  const double x_owner[3] = {XI[0], XI[1], XI[2]};
+  const Gradient H = du, H_rate = dv;
+  Quad origin = quad(displacement(motion[point.owner])), origin_rate = {};
+  if constexpr (Rate) origin_rate = quad(motion[point.owner].velocity);
+  if constexpr (!Periodic)
+    for (int K = 0; K < 3; ++K) {
+      origin -= x_owner[K] * H.column[K];
+      if constexpr (Rate) origin_rate -= x_owner[K] * H_rate.column[K];
+    }
+  Quad force_sum = {}, energy = {}, dissipated = {};
+  Gradient moment;
+  for (std::size_t k = 0; k < point.weights.size(); ++k) {
+    const Index J = point.row[k].particle;
+    const double* XJ = X[J].data();
     double x[3] = {XJ[0], XJ[1], XJ[2]};
     if constexpr (Periodic)
-      for (int k = 0; k < 3; ++k) {
-        x[k] -= Xi[k];
-        if (period[k] > 0.0) x[k] -= period[k] * std::round(x[k] / period[k]);
+      for (int K = 0; K < 3; ++K) {
+        x[K] -= x_owner[K];
+        if (period[K] > 0.0) x[K] -= period[K] * std::round(x[K] / period[K]);
       }
-    Values<N> r = motion[entry.particle] - origin;
-    for (int K = 0; K < 3; ++K) r -= x[K] * H.column[K];
-    const Values<N> force = w * r;
-    sums.energy += force.cwiseProduct(r);
-    sums.force += force;
-    for (int K = 0; K < 3; ++K) sums.moment[K] += x[K] * force;
-    if constexpr (N == 8) pair_force = force.template head<4>() + tau * force.template tail<4>();
-    else pair_force = force;
-  };
-  Sums even, odd;
-  for (std::size_t k = 0; k < weights.size(); k += 2) {
-    visit(row[k], weights[k], even, held[k]);
-    visit(row[k + 1], weights[k + 1], odd, held[k + 1]);
+    const double w = point.kappa * static_cast<double>(point.weights[k]);
+    const Quad r = quad(displacement(motion[J])) - origin - x[0] * H.column[0] - x[1] * H.column[1] - x[2] * H.column[2];
+    Quad force = w * r;
+    energy += force * r;
+    if constexpr (Rate) {
+      const Quad rate = quad(motion[J].velocity) - origin_rate - x[0] * H_rate.column[0] - x[1] * H_rate.column[1] - x[2] * H_rate.column[2];
+      const Quad damping = (w * point.tau) * rate;
+      dissipated += damping * rate;
+      force += damping;
+    }
+    held[k] = force;
+    force_sum += force;
+    add_outer(moment, force, x);
   }
-  const auto damped = [&](const Values<N>& a) -> Vector4 {
-    if constexpr (N == 8) return a.template head<4>() + tau * a.template tail<4>();
-    else return a;
-  };
-  const Vector4 total = damped(even.force + odd.force);
-  f[owner] += total;
+  quad(f[point.owner].data()) += force_sum;
   for (int K = 0; K < 3; ++K) {
-    const Vector4 moment = damped(even.moment[K] + odd.moment[K]);
-    flux.column[K] -= Periodic ? moment : Vector4(moment - Xi[K] * total);
+    flux.column[K] -= moment.column[K];
+    if constexpr (!Periodic) flux.column[K] += x_owner[K] * force_sum;
   }
-  const Values<N> energy = even.energy + odd.energy;
-  if constexpr (N == 8) return {0.5 * energy.template head<4>().sum(), tau * energy.template tail<4>().sum()};
-  else return {0.5 * energy.sum(), 0.0};
-}
-
-/// The same, with the choice of the loop made once per point.
-template <int N>
-StabilizationPower stabilize(std::span<const TableEntry> row, std::span<const float> weights, Index owner, double kappa,
-                             double tau, const Vector3& period,
-                             const Vector4* X, const Values<N>* motion, const Gradient<N>& gradient, Vector4* held,
-                             Vector4* f, Gradient<>& flux) {
-  if (period.any()) return stabilize<true>(row, weights, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
-  return stabilize<false>(row, weights, owner, kappa, tau, period, X, motion, gradient, held, f, flux);
+  return {0.5 * (energy[0] + energy[1] + energy[2]), dissipated[0] + dissipated[1] + dissipated[2]};
 }
 
 }  // namespace tactoid::rows

@@ -123,7 +123,7 @@ template <class Body>
         auto row = table.row(q);
         if (is_padding(table, q, table.offsets[q + 1] - 1)) row = row.first(row.size() - 1);
         PointState<double> state;
-        rows::Gradient<> du, dh;
+        rows::Gradient du, dh;
         rows::gather(table.row(q), body.displacement.data(), du);
         if (table.axisymmetric) rows::turn_around_axis(du);
         if constexpr (Body::has_director) {
@@ -131,10 +131,11 @@ template <class Body>
           if (table.axisymmetric) rows::turn_around_axis(dh);
           state.director = body.director[table.owner[q]].template head<3>();
         }
-        for (int k = 0; k < 3; ++k) {
-          state.deformation_gradient.col(k) += du.column[k].template head<3>();
-          state.director_gradient.col(k) = dh.column[k].template head<3>();
-        }
+        for (int k = 0; k < 3; ++k)
+          for (int i = 0; i < 3; ++i) {
+            state.deformation_gradient(i, k) += du.column[k][i];
+            state.director_gradient(i, k) = dh.column[k][i];
+          }
         const int l = static_cast<int>((q - region.begin) % static_cast<std::size_t>(region.width));
         const auto history = detail::history_at_lane<Law, typename std::decay_t<decltype(region)>::Scalar>(
             region.histories[region.block(q)], l);
