@@ -18,6 +18,7 @@ using Values = Eigen::Matrix<double, N, 1>;
 /// Columns of a referential gradient: column[K] = ∂f/∂X_K.
 template <int N = 4>
 struct Gradient {
+  /// column[K] = ∂f/∂X_K.
   Values<N> column[3] = {Values<N>::Zero(), Values<N>::Zero(), Values<N>::Zero()};
 };
 
@@ -111,8 +112,8 @@ inline void prefetch(std::span<const TableEntry> row) {
 
 /// Energy and dissipated power of the stabilisation of one point.
 struct StabilizationPower {
-  double energy = 0.0;
-  double dissipated = 0.0;
+  double energy = 0.0;      ///< ½ κ Σ_J w_J |r_J|², J
+  double dissipated = 0.0;  ///< κ τ Σ_J w_J |ṙ_J|², W
 };
 
 /// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
