@@ -14,7 +14,7 @@ namespace tactoid {
 /// ρᵈ is a density: J ρᵈ, per reference volume, does not change. D = γ/ρᵈ at J = 1, so a body has γ/ρᵈ = D J.
 template <ObjectiveRate Rate = Corotational>
 struct DirectorField {
-  using rate = Rate;
+  using rate = Rate;  ///< Corotational, Convected, or an own one
 
   double diffusivity = 1.0e-7;  ///< D = γ/ρᵈ at J = 1, m²/s
   double core_size = 0.5e-6;    ///< ε_d, m: the size of a defect's core
