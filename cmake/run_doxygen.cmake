@@ -1,0 +1,20 @@
+# Makes the reference, and fails where a public symbol is not documented or a comment is wrong.
+# cmake -D DOXYGEN=doxygen -D DOXYGEN_VERSION=1.9.4 -D FOLDER=<folder of the Doxyfile> -P run_doxygen.cmake
+cmake_minimum_required(VERSION 3.25)
+execute_process(COMMAND "${DOXYGEN}" "${FOLDER}/Doxyfile" WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${DOXYGEN} ended with status ${status}.")
+endif()
+file(STRINGS "${FOLDER}/warnings.txt" warnings)
+set(faults ${warnings})
+if(NOT DOXYGEN_VERSION VERSION_LESS 1.9.5)
+  # Newer versions warn of more, and of other things; what they say is shown, and this alone counts.
+  list(FILTER faults INCLUDE REGEX "is not documented")
+endif()
+list(JOIN warnings "\n" text)
+if(faults)
+  message(FATAL_ERROR "The reference is not complete:\n${text}")
+elseif(warnings)
+  message(STATUS "Doxygen ${DOXYGEN_VERSION} has remarks:\n${text}")
+endif()
+message(STATUS "The reference: ${FOLDER}/html/index.html")
