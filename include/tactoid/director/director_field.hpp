@@ -37,8 +37,8 @@ struct DirectorField {
     return ginzburg_landau(h, core_size) * T(-diffusivity);
   }
 
-  /// Diffusive flux in the reference configuration D ∇₀h C⁻¹, m/s: the weak form of D ∇²h is
-  /// − Σ_q V_q ρ₀ᵈ (D ∇₀h C⁻¹) ∇₀φ_I. It takes F⁻¹ and ∇₀h (1/m).
+  /// Diffusive flux in the reference configuration D ∇₀h C⁻¹, m/s, from F⁻¹ and ∇₀h (1/m). In the weak form it stands with
+  /// a factor J: −Σ_q V_q J (D ∇₀h C⁻¹) G_qI is V_I times the relaxation D J ∇²h of Dh/Dt.
   template <class T>
   [[nodiscard]] Tensor<T> flux(const Tensor<T>& F_inverse, const Tensor<T>& director_gradient) const {
     return (director_gradient * (F_inverse * F_inverse.transpose())) * T(diffusivity);
