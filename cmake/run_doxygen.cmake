@@ -1,6 +1,7 @@
 # Makes the reference, and fails where a public symbol is not documented or a comment is wrong.
-# cmake -D DOXYGEN=doxygen -D DOXYGEN_VERSION=1.9.4 -D FOLDER=<folder of the Doxyfile> -P run_doxygen.cmake
+# cmake -D DOXYGEN=doxygen -D DOXYGEN_VERSION=1.9.4 -D FOLDER=<folder of the Doxyfile> -D HEADERS=<folder> -P run_doxygen.cmake
 cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE "${FOLDER}/html")
 execute_process(COMMAND "${DOXYGEN}" "${FOLDER}/Doxyfile" WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "${DOXYGEN} ended with status ${status}.")
@@ -11,6 +12,20 @@ if(NOT DOXYGEN_VERSION VERSION_LESS 1.9.5)
   # Newer versions warn of more, and of other things; what they say is shown, and this alone counts.
   list(FILTER faults INCLUDE REGEX "is not documented")
 endif()
+# Doxygen says nothing of a namespace without a comment, nor of what is in it: then it has no page.
+file(GLOB_RECURSE headers "${HEADERS}/*.hpp")
+foreach(header IN LISTS headers)
+  file(STRINGS "${header}" lines REGEX "^ *(inline )?namespace [a-z_:]+ {")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE ".*namespace ([a-z_:]+) .*" "\\1" name "${line}")
+    string(REGEX REPLACE "^tactoid::" "" name "${name}")
+    string(REPLACE "_" "__" page "${name}")
+    if(NOT name MATCHES "^tactoid$|detail$" AND NOT EXISTS "${FOLDER}/html/namespacetactoid_1_1${page}.html")
+      list(APPEND faults ${name})
+      list(APPEND warnings "${header}: the namespace tactoid::${name} is not documented.")
+    endif()
+  endforeach()
+endforeach()
 list(JOIN warnings "\n" text)
 if(faults)
   message(FATAL_ERROR "The reference is not complete:\n${text}")
