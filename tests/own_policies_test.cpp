@@ -1,18 +1,22 @@
-// What a user writes: an own law, gap law, contact, boundary term, integrator, observer, window, kernel and quadrature,
-// each composed in a small simulation. The pages of the rooms (include/tactoid/<room>/README.md) show the code of this
-// file, and a test compares them.
+// What a user writes: an own law, equation of state, gap law, contact, rigid surface, boundary term, integrator, observer, window,
+// kernel, quadrature, director, cloud and output, each composed in a small simulation. The pages of the rooms
+// (include/tactoid/<room>/README.md) show the code of this file, and a test compares them.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <doctest/doctest.h>
 
 #include <tactoid/tactoid.hpp>
+#include <tactoid/verify/all.hpp>
 
 #include "relative.hpp"
 
@@ -41,24 +45,43 @@ struct SaintVenant {
   }
 };
 
-/// An elastic law with a viscosity in parallel, P = P_elastic + η Ḟ: a law that needs rates writes `response`.
+/// An elastic law with a viscosity in parallel, σ = σ_elastic + 2η d: a law that needs rates writes `response`.
 struct KelvinVoigt {
   static constexpr bool uses_rate = true;
   NeoHookean elastic{};
-  double viscosity = 0.01;           ///< η, Pa·s
+  double viscosity = 0.005;          ///< η, Pa·s
   double density = elastic.density;  ///< kg/m³
 
   [[nodiscard]] double wave_speed() const { return elastic.wave_speed(); }
   [[nodiscard]] double shear_modulus() const { return elastic.shear_modulus(); }
-  [[nodiscard]] double viscosity_modulus() const { return viscosity; }
+  [[nodiscard]] double viscosity_modulus() const { return 2.0 * viscosity; }
 
   template <class T>
   [[nodiscard]] Response<T> response(const PointState<T>& point, NoHistory<T>&) const {
+    const Inversion<T> F = invert(point.deformation_gradient);
+    const Tensor<T> d = rate_of_deformation(velocity_gradient(point.deformation_rate, F.inverse));
     Response<T> r;
-    r.stress = elastic.first_piola(point.deformation_gradient) + point.deformation_rate * T(viscosity);
+    r.stress = elastic.first_piola(point.deformation_gradient) + d * F.cofactors * T(2.0 * viscosity);  // P = J σ F⁻ᵀ
     r.energy = elastic.energy(point.deformation_gradient);
-    r.dissipated_power = T(viscosity) * contract(point.deformation_rate, point.deformation_rate);
+    r.dissipated_power = F.determinant * T(2.0 * viscosity) * contract(d, d);
     return r;
+  }
+};
+
+/// Murnaghan's equation of state, which stiffens under pressure: p = p_ref + K/n (J⁻ⁿ − 1).
+struct Murnaghan {
+  static constexpr double n = 7.0;  // water
+
+  template <class T>
+  [[nodiscard]] static T pressure(const T& J, double reference_pressure, double bulk_modulus) {
+    using std::exp, std::log;
+    return T(reference_pressure) + T(bulk_modulus / n) * (exp(log(J) * T(-n)) - T(1.0));
+  }
+  template <class T>
+  [[nodiscard]] static T energy(const T& J, double reference_pressure, double bulk_modulus) {
+    using std::exp, std::log;
+    const T power = exp(log(J) * T(1.0 - n));
+    return T(bulk_modulus / n) * ((power - T(1.0)) * T(1.0 / (n - 1.0)) + J - T(1.0)) - T(reference_pressure) * (J - T(1.0));
   }
 };
 
@@ -113,6 +136,19 @@ struct Tether {
     Vector4 sum = Vector4::Zero();
     for (std::size_t i = 0; i < body.mass.size(); ++i) sum += body.mass[i] * body.position[i];
     return sum / mass(body);
+  }
+};
+
+/// A rigid fibre along y: a surface of your own.
+struct RigidFibre {
+  Vector3 center = Vector3::Zero();  ///< a point of the axis, m
+  double radius = 1e-6;              ///< m
+
+  void validate() const { require_positive("RigidFibre.radius", radius, "m"); }
+  [[nodiscard]] RigidGap at(const Vector3& x, double) const {
+    const Vector3 r(x[0] - center[0], 0.0, x[2] - center[2]);
+    const double distance = r.norm();
+    return {distance - radius, distance > 0.0 ? Vector3(r / distance) : Vector3(Vector3::UnitZ()), Vector3::Zero()};
   }
 };
 
@@ -260,6 +296,79 @@ struct PlainNodal {
   }
 };
 
+// --- director ---------------------------------------------------------------------------------------------------
+
+/// A director that aligns with the flow, A = w + χ d: χ = 1 carries it as a line of particles, χ = −1 is Convected.
+struct FlowAligning {
+  static constexpr double alignment = 0.8;  ///< χ
+
+  template <class T>
+  [[nodiscard]] static Tensor<T> rate_operator(const Tensor<T>& L) {
+    return spin(L) + rate_of_deformation(L) * T(alignment);
+  }
+};
+
+/// A twist: the director turns around z once in every `pitch`.
+struct Twist {
+  double pitch = 2e-6;  ///< m
+
+  [[nodiscard]] Vector3 operator()(const Vector3& X) const {
+    const double angle = 2.0 * std::numbers::pi * X[2] / pitch;
+    return {std::cos(angle), std::sin(angle), 0.0};
+  }
+};
+
+// --- geometry ---------------------------------------------------------------------------------------------------
+
+/// A slab whose upper side is a wave: a box that is deformed before it becomes a body.
+[[nodiscard]] inline PointCloud<3> wavy_slab(double amplitude) {
+  const double length = 6e-6, height = 2e-6;
+  PointCloud<3> cloud = box({.size = {length, 3e-6, height}, .cells = {12, 6, 4}});
+  for (Point<3>& X : cloud.positions)
+    X[2] += amplitude * X[2] / height * std::cos(2.0 * std::numbers::pi * X[0] / length);
+  validate(cloud);  // GeometryError where a cell is inverted
+  return cloud;
+}
+
+/// Two regions side by side, from positions and cells: what a generator or a reader of files has to fill in.
+[[nodiscard]] inline PointCloud<2> two_squares(double edge) {
+  PointCloud<2> cloud;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 3; ++i) cloud.positions.push_back(edge * Point<2>(i, j));
+  cloud.cells = {{0, 1, 3, 4}, {1, 2, 4, 5}};  // tensor order: x first, then y
+  cloud.regions = {"soft", "stiff"};
+  cloud.cell_regions = {0, 1};
+  cloud.facets = extract_facets(cloud);  // the surface, oriented outwards
+  return morton_ordered(cloud);          // neighbours in space are near in memory
+}
+
+// --- output -----------------------------------------------------------------------------------------------------
+
+/// A frame for ParaView with a field of your own: the particles of body 0 and their speeds.
+template <class S>
+void write_speeds(const std::filesystem::path& path, S& simulation) {
+  const ParticleFields particles = simulation.template particles<0>();
+  std::vector<double> speed;
+  for (const Vector4& v : particles.velocity) speed.push_back(v.norm());
+  VtuGrid grid(simulation.time());
+  grid.points(particles.position);
+  grid.vertices(particles.position.size());  // or grid.cells(body.cloud().cells): the background cells
+  grid.point_data("speed", speed);
+  grid.write(path);
+}
+
+/// An observer that keeps a history and a series of such frames.
+[[nodiscard]] inline auto speed_recorder(const std::filesystem::path& folder, double interval) {
+  prepare_folder(folder);
+  return every(interval, [folder, history = HistoryWriter(folder / "history.csv", {"time", "kinetic_energy"}),
+                          series = PvdSeries(folder / "speeds.pvd"), frame = 0](auto& simulation) mutable {
+    history.write(std::array{simulation.time(), simulation.ledger().kinetic});
+    const std::string file = fmt::format("speeds_{:04}.vtu", frame++);
+    write_speeds(folder / file, simulation);
+    series.add(simulation.time(), file);
+  });
+}
+
 // --- the tests --------------------------------------------------------------------------------------------------
 
 namespace {
@@ -299,6 +408,8 @@ EnergyLedger free_flight(const Law& law, double safety) {
 static_assert(Material<SaintVenant> && Material<KelvinVoigt> && GapLaw<Morse> && Contact<Tether, 3>);
 static_assert(BoundaryTerm<Trap, 3> && Window<Bell> && Kernel<LeastSquares<3>>);
 static_assert(Quadrature<PlainNodal, Rkpm<3>> && Quadrature<PlainNodal, LeastSquares<2>>);
+static_assert(ObjectiveRate<FlowAligning> && InitialDirector<Twist> && RigidSurface<RigidFibre>);
+static_assert(EquationOfState<Murnaghan> && DirectorMaterial<NematicGel<Murnaghan>>);
 
 TEST_CASE("An own energy is a law: its stress is F S, and a run conserves energy") {
   const SaintVenant law;
@@ -318,7 +429,8 @@ TEST_CASE("An own energy is a law: its stress is F S, and a run conserves energy
 
 TEST_CASE("An own law with a rate dissipates what its stress says") {
   // Viscous forces see the velocity half a step late: of first order in the step.
-  const KelvinVoigt law{.viscosity = 0.01};
+  const KelvinVoigt law;
+  CHECK(material_gate(law).passed());
   const EnergyLedger coarse = free_flight(law, 0.1), fine = free_flight(law, 0.025);
   CHECK(fine.dissipated > 0.05 * fine.initial);
   CHECK(fine.error() < 5e-3);
@@ -401,4 +513,65 @@ TEST_CASE("An own window, kernel and quadrature make a body: linear fields have 
   Simulation simulation{Bodies{std::move(windowed)}, Contacts{}, Boundaries{}, CentralDifference{.safety = 0.2}};
   simulation.run(1e-6);
   CHECK(simulation.ledger().error() < 1e-3);
+}
+
+TEST_CASE("An own equation of state: the pressure is the derivative of its energy") {
+  CHECK(material_gate(NematicGel<Murnaghan>{}).passed());
+  const double h = 1e-6, K = 2e5;
+  CHECK(Murnaghan::pressure(1.0, 30.0, K) == 30.0);
+  CHECK((Murnaghan::pressure(1.0 - h, 0.0, K) - Murnaghan::pressure(1.0 + h, 0.0, K)) / (2.0 * h) == test::relative(K).epsilon(1e-6));
+  CHECK((Murnaghan::energy(0.9 - h, 30.0, K) - Murnaghan::energy(0.9 + h, 30.0, K)) / (2.0 * h) ==
+        test::relative(Murnaghan::pressure(0.9, 30.0, K)).epsilon(1e-6));
+}
+
+TEST_CASE("An own rate and an own initial director: the director turns into the direction of stretch") {
+  Body gel{"gel",           block(0.0), Rkpm<3>{}, NodalCentroids{}, Materials{Region{"body", NematicGel<>{}}},
+           DirectorField<FlowAligning>{.diffusivity = 0.0}, Twist{.pitch = 8.0 * edge}};
+  const double rate = 1e4, time = 1e-6;  // velocity (a x, −a y, 0)
+  std::vector<Index> all(gel.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  const PrescribedMotion stretch{all, [rate](const Vector3& X, double t) {
+                                   return Vector3(X[0] * (std::exp(rate * t) - 1.0), X[1] * (std::exp(-rate * t) - 1.0), 0.0);
+                                 }};
+  const Field before = gel.director;
+  Simulation simulation{Bodies{std::move(gel)}, Contacts{}, Boundaries{on<0>(stretch)}, CentralDifference{.time_step = 1e-9}};
+  simulation.run(time);
+  const double factor = std::exp(FlowAligning::alignment * rate * time);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Vector4& h = simulation.body<0>().director[i];
+    CHECK(std::abs(h[0] - before[i][0] * factor) < 1e-5);
+    CHECK(std::abs(h[1] - before[i][1] / factor) < 1e-5);
+  }
+}
+
+TEST_CASE("Own clouds are bodies: volumes, regions and the patch test") {
+  const PointCloud<3> slab = wavy_slab(0.5e-6);
+  CHECK(volume(slab) == test::relative(6e-6 * 3e-6 * 2e-6).epsilon(1e-12));
+  CHECK_THROWS_AS((void)wavy_slab(2.5e-6), GeometryError);
+  Tensor3 F = Tensor3::Identity();
+  F(0, 0) = 1.05;
+  F(0, 2) = 0.02;
+  Body b{"slab", slab, Rkpm<3>{}, NodalCentroids{}, Materials{Region{"body", NeoHookean{}}}};
+  CHECK(patch_test(b, F).displacement_error < 1e-10);
+  const PointCloud<2> squares = two_squares(1e-6);
+  validate(squares);
+  CHECK(squares.facets.size() == 6);
+  CHECK(boundary_area(squares) == test::relative(6e-6).epsilon(1e-12));
+}
+
+TEST_CASE("An own rigid surface holds a body, and own output is there afterwards") {
+  auto b = body(0.0, NeoHookean{});
+  for (Vector4& v : b.velocity) v[2] = -0.05;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "tactoid_own_output";
+  Simulation simulation{Bodies{std::move(b)}, Contacts{},
+                        Boundaries{on<0>(OnRigid<RepulsiveWall, RigidFibre>{
+                            .law = {.penalty = 1e11}, .surface = {.center = {0.5 * edge, 0.0, -1.01e-6}, .radius = 1e-6}})},
+                        CentralDifference{.safety = 0.3}};
+  auto recorder = speed_recorder(folder, 1e-6);
+  simulation.run(4e-6, recorder);
+  CHECK(simulation.boundary<0>().force()[2] < 0.0);
+  CHECK(simulation.ledger().error() < 1e-2);
+  CHECK(std::filesystem::exists(folder / "speeds_0004.vtu"));
+  CHECK(std::filesystem::exists(folder / "speeds.pvd"));
+  std::filesystem::remove_all(folder);
 }

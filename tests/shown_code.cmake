@@ -1,17 +1,22 @@
 # The code that a page shows is code that is compiled: every ```cpp block of PAGE must stand, as it is, in SOURCE. With
-# WHOLE, one block must be all of SOURCE.
-# cmake -D PAGE=README.md -D SOURCE=main.cpp [-D WHOLE=ON] -P shown_code.cmake
+# WHOLE, one block must be all of SOURCE; with LANGUAGE it is the blocks of that language instead.
+# cmake -D PAGE=README.md -D SOURCE=main.cpp [-D WHOLE=ON] [-D LANGUAGE=python] -P shown_code.cmake
 cmake_minimum_required(VERSION 3.25)
 file(READ "${PAGE}" rest)
 file(READ "${SOURCE}" source)
+if(NOT LANGUAGE)
+  set(LANGUAGE cpp)
+endif()
+set(fence "```${LANGUAGE}\n")
+string(LENGTH "${fence}" fence_length)
 set(blocks 0)
 set(whole OFF)
 while(TRUE)
-  string(FIND "${rest}" "```cpp\n" begin)
+  string(FIND "${rest}" "${fence}" begin)
   if(begin EQUAL -1)
     break()
   endif()
-  math(EXPR begin "${begin} + 7")
+  math(EXPR begin "${begin} + ${fence_length}")
   string(SUBSTRING "${rest}" ${begin} -1 rest)
   string(FIND "${rest}" "```" end)
   if(end EQUAL -1)

@@ -17,3 +17,7 @@
 #include <tactoid/output/all.hpp>
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/all.hpp>
+
+/// Meshfree Galerkin simulation of soft matter. The rooms of the library are folders, not namespaces: everything a program
+/// uses is here, what is internal to a room in `detail`.
+namespace tactoid {}

@@ -19,6 +19,7 @@ namespace tactoid {
 /// a constant acceleration has none there.
 template <class Acceleration = Vector3>
 struct BodyForce {
+  /// The acceleration is a vector, not a function.
   static constexpr bool constant = std::convertible_to<Acceleration, Vector3>;
   static_assert(
       constant || requires(const Acceleration& b, const Vector3& X) {
@@ -28,11 +29,14 @@ struct BodyForce {
   Acceleration acceleration{};  ///< b, N/kg = m/s²
   int dimension = 0;            ///< set by initialize()
 
+  /// Throws ParameterError for a constant acceleration that is not finite.
   void validate() const {
     if constexpr (constant)
       for (int k = 0; k < 3; ++k) require_finite("BodyForce.acceleration", Vector3(acceleration)[k], "N/kg");
   }
 
+  /// Throws ParameterError for a constant acceleration that is not finite, or not along the axis of a meridian
+  /// section.
   template <int D>
   void initialize(const PointCloud<D>& cloud, const ParticleFields&) {
     validate();
@@ -42,6 +46,7 @@ struct BodyForce {
     dimension = D;
   }
 
+  /// Adds m_I b; returns −Σ m b·x as potential, or Σ m b·v as external power.
   TermEnergy apply(const ParticleFields& body, double time) {
     parallel_for(body.force.size(), [&](std::size_t i) { body.force[i] += force(body, i, time); });
     TermEnergy total;
@@ -54,7 +59,7 @@ struct BodyForce {
     return total;
   }
 
-  [[nodiscard]] double stiffness_rate(const ParticleFields&) const { return 0.0; }
+  [[nodiscard]] double stiffness_rate(const ParticleFields&) const { return 0.0; }  ///< limits nothing
 
  private:
   Vector4 force(const ParticleFields& body, std::size_t i, double time) const {

@@ -24,8 +24,10 @@ struct CurvatureSurfaceTension {
   std::vector<double> areas{};               ///< current nodal areas, per particle, m²
   std::vector<double> curvatures{};          ///< κ, per particle, 1/m
 
+  /// Throws ParameterError unless tension >= 0.
   void validate() const { require_non_negative("CurvatureSurfaceTension.tension", tension, "N/m"); }
 
+  /// Throws ParameterError unless tension >= 0, GeometryError for a cloud without facets or with periodic directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
@@ -36,13 +38,16 @@ struct CurvatureSurfaceTension {
     curvatures.assign(cloud.size(), 0.0);
   }
 
+  /// Adds −σ₀ κ_I a_I n_I; returns σ₀ A, and the power of the forces beyond its change.
   TermEnergy apply(const ParticleFields& body, double) {
     return integral.visit([&]<int D>(SurfaceIntegral<D>& s) { return apply_to(s, body); });
   }
 
+  /// Of σ₀ A, which these forces approximate.
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
     return integral.visit([&](const auto& s) { return area_stiffness_rate(s, body, tension); });
   }
+  /// For checkpoints: normals, areas and curvatures, for who reads them before the next step.
   template <class Archive>
   void state(Archive& archive) {
     archive("normals", normals);

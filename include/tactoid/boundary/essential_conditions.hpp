@@ -49,7 +49,7 @@ class EssentialConditions {
     reactions_.assign(motions_.size(), Vector3::Zero());
   }
 
-  [[nodiscard]] bool empty() const { return motions_.empty(); }
+  [[nodiscard]] bool empty() const { return motions_.empty(); }  ///< nothing is prescribed
 
   /// Corrects u so that the conditions hold at `time`, and the velocity of the step that led there. `time_step`
   /// is that step (0: an initial state, where no velocity is changed) and `step_before` the one before it (0 in the
@@ -123,8 +123,10 @@ class EssentialConditions {
   [[nodiscard]] const Field& forces() const { return forces_; }
   /// Force of the constraint m on the body in the last step, N.
   [[nodiscard]] const Vector3& reaction(std::size_t m) const { return reactions_[m]; }
+  /// In the order in which reactions are numbered.
   [[nodiscard]] const std::vector<PrescribedMotion>& motions() const { return motions_; }
 
+  /// For checkpoints: the forces, and what the work of the next step begins with.
   template <class Archive>
   void state(Archive& archive) {
     archive("forces", forces_);
@@ -139,9 +141,10 @@ class EssentialConditions {
     }
   }
 
+  /// A component of a particle that is prescribed.
   struct Condition {
-    Index particle;
-    std::size_t motion;
+    Index particle;      ///< number of the particle
+    std::size_t motion;  ///< number of the motion that it follows
   };
   /// The prescribed particles of a component.
   [[nodiscard]] const std::vector<Condition>& conditions(int component) const {
@@ -153,8 +156,11 @@ class EssentialConditions {
     std::vector<Condition> conditions;
     Eigen::SparseMatrix<double, Eigen::RowMajor> rows;  // N
     std::shared_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> solver;
+    /// What the next step needs of the last one.
     struct Last {
-      double value = 0.0, rate = 0.0, ahead = 0.0;  // prescribed value, its rate in the step, work taken in advance
+      double value = 0.0;  ///< prescribed value, m
+      double rate = 0.0;   ///< its rate in the step, m/s
+      double ahead = 0.0;  ///< work taken in advance, J
     };
     std::vector<Last> last;  // of each condition, from the last step
 

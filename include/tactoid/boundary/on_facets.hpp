@@ -14,7 +14,7 @@ namespace tactoid {
 /// The cut planes of a body that is computed in part, by symmetry, are no surface: leave them out.
 template <class Term, class Predicate>
 struct OnFacets {
-  Term term;
+  Term term;            ///< satisfies BoundaryTerm
   Predicate predicate;  ///< bool(const Point<D>& X)
 
   /// Throws GeometryError where no facet satisfies the predicate.
@@ -25,16 +25,20 @@ struct OnFacets {
     if (part.facets.empty()) throw GeometryError("OnFacets: no facet of the body satisfies the predicate.");
     term.initialize(part, body);
   }
-  TermEnergy apply(const ParticleFields& body, double time) { return term.apply(body, time); }
+  TermEnergy apply(const ParticleFields& body, double time) { return term.apply(body, time); }  ///< of the term
+  /// Of the term.
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const { return term.stiffness_rate(body); }
+  /// Of the term, where it has one.
   template <class Emit>
     requires TermWithStiffness<Term>
   void add_stiffness(const ParticleFields& body, const Emit& emit) const {
     term.add_stiffness(body, emit);
   }
+  /// For checkpoints: that of the term.
   template <class Archive>
   void state(Archive& archive) { archive.part("term", term); }
 };
+/// Deduced from the term and the predicate.
 template <class Term, class Predicate>
 OnFacets(Term, Predicate) -> OnFacets<Term, Predicate>;
 

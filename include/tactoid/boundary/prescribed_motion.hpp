@@ -12,10 +12,11 @@ namespace tactoid {
 /// An essential condition: the displacement *at* the given particles (interpolated, where the unknowns are
 /// coefficients) follows a function of the reference position and of time, in the chosen components.
 struct PrescribedMotion {
-  std::vector<Index> particles;
+  std::vector<Index> particles;                                        ///< numbers of the particles
   std::function<Vector3(const Vector3& X, double time)> displacement;  ///< m; empty: zero
-  std::array<bool, 3> components = {true, true, true};
+  std::array<bool, 3> components = {true, true, true};                 ///< which components are prescribed
 
+  /// ū at the reference position X (m) and time (s); all components, m.
   [[nodiscard]] Vector3 value(const Vector3& X, double time) const {
     return displacement ? displacement(X, time) : Vector3::Zero();
   }

@@ -22,8 +22,11 @@ struct AmbientPressure {
   double pressure = 0.0;                     ///< p, gauge, Pa; positive compresses
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()
 
+  /// Throws ParameterError unless finite.
   void validate() const { require_finite("AmbientPressure.pressure", pressure, "Pa"); }
 
+  /// Throws ParameterError for a pressure that is not finite, GeometryError for a cloud without facets or with
+  /// periodic directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
@@ -31,6 +34,7 @@ struct AmbientPressure {
     integral.emplace<D>().initialize(cloud, body);
   }
 
+  /// Adds −p ∫ N_I n da; returns p V on a closed surface, else the power.
   TermEnergy apply(const ParticleFields& body, double) {
     return integral.visit([&]<int D>(SurfaceIntegral<D>& s) {
       parallel_for(s.force.size(), [&](std::size_t f) {

@@ -18,11 +18,12 @@ namespace tactoid {
 /// (so that facets are independent, and the sum at a particle has a fixed order).
 template <int D>
 struct SurfaceIntegral {
-  FacetSurface<D> surface;
-  FacetQuadrature<D> quadrature;
+  FacetSurface<D> surface;                                           ///< the facets
+  FacetQuadrature<D> quadrature;                                     ///< 2 Gauss points along each side
   std::vector<std::array<Vector3, FacetSurface<D>::corners>> force;  ///< of each facet on its nodes
   std::vector<double> value;                                         ///< of each facet
 
+  /// From the facets of a cloud. Throws GeometryError for a cloud without facets or with periodic directions.
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
     surface = FacetSurface<D>(cloud);
     quadrature = FacetQuadrature<D>(surface, body.reference, 2);
@@ -41,6 +42,7 @@ struct SurfaceIntegral {
     return sum;
   }
 
+  /// For checkpoints: the values per facet, for who reads them before the next step.
   template <class Archive>
   void state(Archive& archive) { archive("value", value); }
 };
@@ -108,8 +110,10 @@ struct SurfaceTension {
   double tension = 0.072e-3;                 ///< σ₀, N/m
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()
 
+  /// Throws ParameterError unless tension >= 0.
   void validate() const { require_non_negative("SurfaceTension.tension", tension, "N/m"); }
 
+  /// Throws ParameterError unless tension >= 0, GeometryError for a cloud without facets or with periodic directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
@@ -117,6 +121,7 @@ struct SurfaceTension {
     integral.emplace<D>().initialize(cloud, body);
   }
 
+  /// Adds −σ₀ ∂A/∂x_I and returns σ₀ A.
   TermEnergy apply(const ParticleFields& body, double) {
     return integral.visit([&]<int D>(SurfaceIntegral<D>& s) {
       parallel_for(s.force.size(), [&](std::size_t f) {
@@ -127,6 +132,7 @@ struct SurfaceTension {
     });
   }
 
+  /// Gershgorin's bound, see area_stiffness_rate.
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
     return integral.visit([&](const auto& s) { return area_stiffness_rate(s, body, tension); });
   }
@@ -139,6 +145,7 @@ struct SurfaceTension {
       return sum / tension;
     });
   }
+  /// For checkpoints: the area.
   template <class Archive>
   void state(Archive& archive) { archive.part("integral", integral); }
 };

@@ -16,7 +16,7 @@ namespace tactoid {
 /// The point of a surface that is closest to a query point x.
 template <int D>
 struct ClosestPoint {
-  Index facet = 0;
+  Index facet = 0;                          ///< on which x_c lies
   typename FacetSurface<D>::Local local{};  ///< (s) or (s, t) on the facet
   Vector3 point = Vector3::Zero();          ///< x_c, m
   Vector3 normal = Vector3::Zero();         ///< ∂gap/∂x, a unit vector out of the surface
@@ -27,12 +27,12 @@ struct ClosestPoint {
 /// The point of one facet that is closest to x.
 template <int D>
 struct FacetProjection {
-  typename FacetSurface<D>::Local local{};
-  Vector3 point = Vector3::Zero();
-  double squared_distance = std::numeric_limits<double>::max();
+  typename FacetSurface<D>::Local local{};  ///< (s) or (s, t) on the facet
+  Vector3 point = Vector3::Zero();  ///< closest point, m
+  double squared_distance = std::numeric_limits<double>::max();  ///< to the query point, m²
   int side = -1;    ///< edge of the facet on which the point lies (D = 3), −1 otherwise
   int corner = -1;  ///< corner of the facet that the point is, −1 otherwise
-  [[nodiscard]] bool interior() const { return side < 0 && corner < 0; }
+  [[nodiscard]] bool interior() const { return side < 0 && corner < 0; }  ///< neither on an edge nor in a corner
 };
 
 namespace detail {

@@ -15,19 +15,22 @@ namespace tactoid {
 /// Forces and energies add up, in the order of the parts.
 template <class... Parts>
 struct Combined {
-  std::tuple<Parts...> parts;
+  std::tuple<Parts...> parts;  ///< in the order given
 
   Combined() = default;
+  /// Takes the parts over.
   explicit Combined(Parts... p)
     requires(sizeof...(Parts) > 0)
       : parts(std::move(p)...) {}
 
+  /// Initializes every part; throws what they throw.
   template <int D>
     requires(Contact<Parts, D> && ...)
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
                   const ParticleFields& b) {
     std::apply([&](auto&... part) { (part.initialize(cloud_a, a, cloud_b, b), ...); }, parts);
   }
+  /// Sum over the parts.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time) {
     TermEnergy total;
     std::apply([&](auto&... part) { ((total += part.apply(a, b, time)), ...); }, parts);
@@ -38,6 +41,7 @@ struct Combined {
     return std::apply([&](const auto&... part) { return (0.0 + ... + part.stiffness_rate(a, b)); }, parts);
   }
 
+  /// For checkpoints: those of the parts.
   template <class Archive>
   void state(Archive& archive) {
     std::apply([&](auto&... part) { int n = 0; (archive.part("part_" + std::to_string(n++), part), ...); }, parts);
@@ -48,6 +52,7 @@ struct Combined {
   [[nodiscard]] const Part& get() const {
     return std::get<Part>(parts);
   }
+  /// The part of type `Part`.
   template <class Part>
   [[nodiscard]] Part& get() {
     return std::get<Part>(parts);

@@ -12,8 +12,8 @@ namespace tactoid {
 ///
 /// `initialize` is called once, when the simulation is composed, with the two reference clouds and fields; it
 /// checks parameters and builds search structures. `apply` is called once in every step: it adds forces to both
-/// bodies and returns its energy. `apply` must give the same bits for any number of threads; it may keep state
-/// (tracked closest points), but its result may depend on the positions alone.
+/// bodies and returns its energy. `apply` must give the same bits for any number of threads; it may keep state: what
+/// only saves work (tracked closest points), and what the contact remembers (bonds), which a `state(archive)` hands to checkpoints.
 /// `stiffness_rate(a, b)` bounds ω² = k/m (1/s²) of the interaction at the present gaps, for the stable step: called after
 /// every `apply`.
 template <class C, int D>

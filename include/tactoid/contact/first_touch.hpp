@@ -13,6 +13,7 @@ struct FirstTouch {
   double capture_distance = 100e-9;  ///< gap at which a particle counts as touching, m
   std::vector<char> touched{};       ///< per particle: 1 once it has touched
 
+  /// Throws ParameterError unless capture_distance > 0.
   void validate() const { require_positive("FirstTouch.capture_distance", capture_distance, "m"); }
 
   /// Particles that touch for the first time at these gaps (m, one per particle; infinity = not on the surface),
@@ -28,6 +29,7 @@ struct FirstTouch {
     return first;
   }
 
+  /// For checkpoints: who has touched.
   template <class Archive>
   void state(Archive& archive) { archive("touched", touched); }
 };

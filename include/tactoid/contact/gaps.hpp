@@ -15,6 +15,8 @@ namespace tactoid {
 template <int D>
 class SurfaceGaps {
  public:
+  /// Builds both surfaces and measures once. Throws GeometryError for a cloud without facets or with periodic
+  /// directions.
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
                   const ParticleFields& b) {
     surface_ = FacetSurface<D>(cloud_a);
@@ -45,9 +47,10 @@ class SurfaceGaps {
   [[nodiscard]] std::span<const Vector4> normals() const { return normals_; }
   /// Closest points of the surface particles, in the order of `surface().nodes`.
   [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return tracker_.closest(); }
-  [[nodiscard]] const FacetSurface<D>& surface() const { return surface_; }
-  [[nodiscard]] const FacetSurface<D>& master() const { return master_; }
+  [[nodiscard]] const FacetSurface<D>& surface() const { return surface_; }  ///< of body A
+  [[nodiscard]] const FacetSurface<D>& master() const { return master_; }    ///< of body B
 
+  /// For checkpoints: gaps, normals and the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) {
     archive.part("tracker", tracker_);

@@ -24,6 +24,7 @@ struct LigandReceptorLaw {
   double floor = 0.3;                 ///< gap below which the traction is linear, × ε, in (0, 1)
   double cutoff = 20.0;               ///< gap beyond which there is no force, × ε, > √(5/3)
 
+  /// Throws ParameterError for a value that is not in its range.
   void validate() const {
     require_non_negative("LigandReceptor.bond_density", bond_density, "1/m^2");
     require_non_negative("LigandReceptor.binding_energy", binding_energy, "J");
@@ -34,8 +35,9 @@ struct LigandReceptorLaw {
              "finite and above sqrt(5/3) = 1.291, the gap of peak attraction");
   }
 
-  [[nodiscard]] double reach() const { return cutoff * range; }
+  [[nodiscard]] double reach() const { return cutoff * range; }  ///< cutoff ε, m
 
+  /// N_b (Φ(g) − Φ(cutoff)), J/m².
   [[nodiscard]] double potential(double gap) const {
     if (gap >= reach()) return 0.0;
     const double r = gap / range;
@@ -45,12 +47,14 @@ struct LigandReceptorLaw {
            (well(floor) - well(cutoff) - below * (4.0 * pull(floor) + 2.0 * pull_slope(floor) * below));
   }
 
+  /// t(g), Pa; positive pushes apart.
   [[nodiscard]] double traction(double gap) const {
     if (gap >= reach()) return 0.0;
     const double r = gap / range, scale = 4.0 * bond_density * binding_energy / range;
     return scale * (r >= floor ? pull(r) : pull(floor) + pull_slope(floor) * (r - floor));
   }
 
+  /// |dt/dg|, Pa/m; below the floor that of the floor.
   [[nodiscard]] double stiffness(double gap) const {
     if (gap >= reach()) return 0.0;
     const double r = std::fmax(gap / range, floor);
@@ -59,7 +63,7 @@ struct LigandReceptorLaw {
 
   /// Gap of the strongest attraction, √(5/3) ε, m, and the attraction there, Pa (positive).
   [[nodiscard]] double peak_gap() const { return std::sqrt(5.0 / 3.0) * range; }
-  [[nodiscard]] double peak_attraction() const { return -traction(peak_gap()); }
+  [[nodiscard]] double peak_attraction() const { return -traction(peak_gap()); }  ///< largest attraction, Pa (positive)
 
  private:
   static double well(double r) {
@@ -90,19 +94,25 @@ struct LigandReceptor {
   int points_per_direction = 2;               ///< Gauss points along each side of a facet, 1 to 4
   SurfaceContactEngine engine{};              ///< set by initialize()
 
+  /// The law of the gap with these numbers.
   [[nodiscard]] LigandReceptorLaw law() const { return {bond_density, binding_energy, range, floor, cutoff}; }
-  void validate() const { law().validate(); }
+  void validate() const { law().validate(); }  ///< throws ParameterError for a value that is not in its range
 
+  /// Throws ParameterError for a value that is not in its range, GeometryError for a cloud without facets or with
+  /// periodic directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
                   const ParticleFields& b) {
     engine.initialize<D>(law(), cloud_a, a, cloud_b, b, points_per_direction, two_pass);
   }
+  /// See SurfaceContactEngine.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) { return engine.apply(law(), a, b, area); }
+  /// Bound of ω² at the present gaps, 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law(), a, b);
   }
+  /// For checkpoints: the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("engine", engine); }
 };

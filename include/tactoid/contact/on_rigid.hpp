@@ -19,6 +19,8 @@ namespace tactoid {
 template <int D>
 class RigidPass {
  public:
+  /// Builds the facets of the body. Throws GeometryError for a cloud without facets or with periodic directions,
+  /// ParameterError unless points_per_direction is 1 to 4.
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body, int points_per_direction) {
     surface_ = FacetSurface<D>(cloud);
     quadrature_ = FacetQuadrature<D>(surface_, body.reference, points_per_direction);
@@ -59,6 +61,7 @@ class RigidPass {
     return total;
   }
 
+  /// Gershgorin's bound of ω² at the gaps of the last call of apply (and of two steps ahead), 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
     std::vector<double> sum(body.mass.size(), 0.0);
     for (std::size_t q = 0; q < states_.size(); ++q)
@@ -83,6 +86,7 @@ class RigidPass {
     }
   }
 
+  /// For checkpoints: the time of the last call.
   template <class Archive>
   void state(Archive& archive) { archive("last_time", last_time_); }
 
@@ -104,17 +108,19 @@ class RigidPass {
 /// ParameterError.
 template <GapLaw Law = RepulsiveWall, RigidSurface Surface = RigidPlane>
 struct OnRigid {
-  Law law{};
-  Surface surface{};
+  Law law{};                             ///< of the gap
+  Surface surface{};                     ///< against which the body is pressed
   int points_per_direction = 2;          ///< Gauss points along each side of a facet, 1 to 4
   PerDimension<RigidPass> pass{};        ///< set by initialize()
   Vector3 on_surface = Vector3::Zero();  ///< see force()
   double stored = 0.0;                   ///< see energy()
 
+  /// Throws ParameterError where law or surface do.
   void validate() const {
     law.validate();
     surface.validate();
   }
+  /// Throws ParameterError, and GeometryError for a cloud without facets or with periodic directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
@@ -126,6 +132,7 @@ struct OnRigid {
     }
     pass.emplace<D>().initialize(cloud, body, points_per_direction);
   }
+  /// Adds A_q t(g) n; returns Σ A_q Φ and the power of a moving surface.
   TermEnergy apply(const ParticleFields& body, double time) {
     const TermEnergy energy = pass.visit([&](auto& p) { return p.apply(law, surface, body, time, on_surface); });
     stored = energy.potential;
@@ -145,6 +152,7 @@ struct OnRigid {
   [[nodiscard]] Vector3 force() const { return on_surface; }
   /// Energy between body and surface at that call, J.
   [[nodiscard]] double energy() const { return stored; }
+  /// For checkpoints: force and energy of the last call.
   template <class Archive>
   void state(Archive& archive) {
     archive.part("pass", pass);
@@ -165,10 +173,12 @@ struct RigidPlate {
   int points_per_direction = 2;        ///< Gauss points along each side of a facet, 1 to 4
   OnRigid<Law, RigidPlane> contact{};  ///< set by initialize()
 
+  /// Throws ParameterError where the law does, for a normal of no length, and for what is not finite.
   void validate() const {
     law.validate();
     RigidPlane{point, normal, velocity}.validate();
   }
+  /// Throws as OnRigid does.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
@@ -177,14 +187,17 @@ struct RigidPlate {
     contact.points_per_direction = points_per_direction;
     contact.initialize(cloud, body);
   }
-  TermEnergy apply(const ParticleFields& body, double time) { return contact.apply(body, time); }
+  TermEnergy apply(const ParticleFields& body, double time) { return contact.apply(body, time); }  ///< see OnRigid
+  /// See OnRigid.
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const { return contact.stiffness_rate(body); }
+  /// See OnRigid.
   template <class Emit>
   void add_stiffness(const ParticleFields& body, const Emit& emit) const {
     contact.add_stiffness(body, emit);
   }
   /// Force of the body on the plate at the last call of apply, N.
   [[nodiscard]] Vector3 force() const { return contact.force(); }
+  /// For checkpoints: that of the contact.
   template <class Archive>
   void state(Archive& archive) { archive.part("contact", contact); }
 };

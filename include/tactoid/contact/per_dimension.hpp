@@ -12,11 +12,12 @@ namespace tactoid {
 template <template <int> class T>
 class PerDimension {
  public:
+  /// Makes a new T<D>, D = 2 or 3, in the place of what was held.
   template <int D>
   T<D>& emplace() {
     return value_.template emplace<T<D>>();
   }
-  [[nodiscard]] bool empty() const { return std::holds_alternative<std::monostate>(value_); }
+  [[nodiscard]] bool empty() const { return std::holds_alternative<std::monostate>(value_); }  ///< before `emplace`
 
   /// Calls f with the T<D> held. Throws Error before `emplace`.
   template <class F>
@@ -25,6 +26,7 @@ class PerDimension {
     if (auto* two = std::get_if<T<2>>(&value_)) return std::forward<F>(f)(*two);
     return std::forward<F>(f)(*std::get_if<T<3>>(&value_));
   }
+  /// Calls f with the T<D> held. Throws Error before `emplace`.
   template <class F>
   decltype(auto) visit(F&& f) const {
     require_value();

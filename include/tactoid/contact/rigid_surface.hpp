@@ -32,6 +32,7 @@ struct RigidPlane {
   Vector3 normal = Vector3::UnitZ();   ///< outward; its length does not matter
   Vector3 velocity = Vector3::Zero();  ///< m/s
 
+  /// Throws ParameterError for a normal of no length, and for what is not finite.
   void validate() const {
     for (int k = 0; k < 3; ++k) {
       require_finite("RigidPlane.point", point[k], "m");
@@ -39,6 +40,7 @@ struct RigidPlane {
     }
     require_positive("length of RigidPlane.normal", normal.norm());
   }
+  /// Gap of x (m) at the time (s).
   [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
     const Vector3 n = normal.normalized();
     return {n.dot(x - point - time * velocity), n, velocity};
@@ -51,6 +53,7 @@ struct RigidSphere {
   double radius = 1e-6;                ///< m
   Vector3 velocity = Vector3::Zero();  ///< m/s
 
+  /// Throws ParameterError unless radius > 0, and for what is not finite.
   void validate() const {
     for (int k = 0; k < 3; ++k) {
       require_finite("RigidSphere.center", center[k], "m");
@@ -58,6 +61,7 @@ struct RigidSphere {
     }
     require_positive("RigidSphere.radius", radius, "m");
   }
+  /// Gap of x (m) at the time (s); in the centre the normal is z.
   [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
     const Vector3 r = x - center - time * velocity;
     const double distance = r.norm();
@@ -69,15 +73,17 @@ struct RigidSphere {
 /// The velocity must be the derivative of the displacement, or the energy balance does not close.
 template <RigidSurface S>
 struct Moving {
-  S surface{};
-  std::function<Vector3(double)> displacement;
-  std::function<Vector3(double)> velocity;
+  S surface{};                                  ///< at time 0
+  std::function<Vector3(double)> displacement;  ///< of the time, s: m
+  std::function<Vector3(double)> velocity;      ///< of the time, s: m/s
 
+  /// Throws ParameterError where the surface does, and for a missing function.
   void validate() const {
     surface.validate();
     if (!displacement || !velocity)
       throw ParameterError("Moving.displacement and Moving.velocity must both be given, as functions of the time.");
   }
+  /// Gap of x (m) at the time (s).
   [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
     RigidGap g = surface.at(x - displacement(time), time);
     g.velocity += velocity(time);

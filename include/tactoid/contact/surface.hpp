@@ -24,7 +24,8 @@ inline constexpr Index no_facet = ~Index{0};
 /// out of the plane, times the circumference 2πr in a meridian section, so that the same cross product gives the outward
 /// normal and the element of length, or of the ring's area.
 struct FacetTangents {
-  Vector3 s, t;
+  Vector3 s;  ///< ∂x/∂s, m
+  Vector3 t;  ///< ∂x/∂t, m (D = 2: 1, or m of the circumference)
   /// ∂x/∂s × ∂x/∂t: outward, its length is the surface element da/(ds dt), m² (plane: m).
   [[nodiscard]] Vector3 area_vector() const { return s.cross(t); }
 };
@@ -35,12 +36,12 @@ struct FacetTangents {
 template <int D>
 struct FacetSurface {
   static_assert(D == 2 || D == 3, "Surfaces exist in 2 and 3 dimensions.");
-  static constexpr int dimension = D;
+  static constexpr int dimension = D;                                 ///< D
   static constexpr std::size_t corners = 1u << (D - 1);  ///< nodes of a facet
   static constexpr std::size_t sides = D == 2 ? 2 : 4;   ///< end points (D = 2) or edges (D = 3)
-  using Facet = typename PointCloud<D>::Facet;
+  using Facet = typename PointCloud<D>::Facet;                        ///< numbers of its nodes
   using Local = std::array<double, static_cast<std::size_t>(D - 1)>;  ///< (s) or (s, t), each in [0, 1]
-  using Shape = std::array<double, corners>;
+  using Shape = std::array<double, corners>;                          ///< one number per node of a facet
 
   std::vector<Facet> facets;       ///< nodes of each facet, in the order of PointCloud
   std::vector<Index> nodes;        ///< particles on the surface, ascending
@@ -77,7 +78,7 @@ struct FacetSurface {
         }
   }
 
-  [[nodiscard]] static Local make_local(double s, [[maybe_unused]] double t) {
+  [[nodiscard]] static Local make_local(double s, [[maybe_unused]] double t) {  ///< (s) for D = 2, (s, t) for D = 3
     if constexpr (D == 2)
       return {s};
     else
@@ -98,6 +99,7 @@ struct FacetSurface {
     else
       return {-(1.0 - l[1]), 1.0 - l[1], -l[1], l[1]};
   }
+  /// ∂N_a/∂t; zero for D = 2.
   [[nodiscard]] static Shape shape_t(const Local& l) {
     if constexpr (D == 2)
       return {0.0, 0.0};
@@ -113,6 +115,7 @@ struct FacetSurface {
     return v;
   }
 
+  /// Tangents at a point of a facet, with the particles at `x` (m).
   [[nodiscard]] FacetTangents tangents(Index facet, const Local& local, std::span<const Vector4> x) const {
     const Facet& c = facets[facet];
     if constexpr (D == 2) {
@@ -207,7 +210,8 @@ struct FacetSurface {
 /// Gauss points on the facets of a surface, with weights of the reference configuration.
 template <int D>
 struct FacetQuadrature {
-  using Local = typename FacetSurface<D>::Local;
+  using Local = typename FacetSurface<D>::Local;  ///< place on a facet
+  /// A Gauss point of the unit facet.
   struct FacetPoint {
     Local local;                            ///< where on the facet
     typename FacetSurface<D>::Shape shape;  ///< N_a there
@@ -234,8 +238,10 @@ struct FacetQuadrature {
             points[q].weight * surface.tangents(f, points[q].local, reference).area_vector().norm();
   }
 
-  [[nodiscard]] std::size_t size() const { return area.size(); }
+  [[nodiscard]] std::size_t size() const { return area.size(); }  ///< number of points on all facets
+  /// Facet of point q.
   [[nodiscard]] Index facet_of(std::size_t q) const { return static_cast<Index>(q / points.size()); }
+  /// Point q on its facet.
   [[nodiscard]] const FacetPoint& point(std::size_t q) const { return points[q % points.size()]; }
 
  private:

@@ -28,6 +28,9 @@ enum class ContactArea {
 template <int D>
 class ContactPass {
  public:
+  /// Builds both surfaces and looks for all closest points. `reach` (m): gaps beyond it need not be followed. Throws
+  /// GeometryError for a cloud without facets or with periodic directions, ParameterError unless points_per_direction
+  /// is 1 to 4.
   void initialize(const PointCloud<D>& slave_cloud, const ParticleFields& slave, const PointCloud<D>& master_cloud,
                   const ParticleFields& master, int points_per_direction, double reach) {
     slave_ = FacetSurface<D>(slave_cloud);
@@ -106,10 +109,11 @@ class ContactPass {
 
   /// Closest points of the slave's quadrature points, facet by facet.
   [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return tracker_.closest(); }
-  [[nodiscard]] const FacetSurface<D>& slave() const { return slave_; }
-  [[nodiscard]] const FacetSurface<D>& master() const { return master_; }
-  [[nodiscard]] const FacetQuadrature<D>& quadrature() const { return quadrature_; }
+  [[nodiscard]] const FacetSurface<D>& slave() const { return slave_; }               ///< whose quadrature points are tried
+  [[nodiscard]] const FacetSurface<D>& master() const { return master_; }             ///< on which they look for closest points
+  [[nodiscard]] const FacetQuadrature<D>& quadrature() const { return quadrature_; }  ///< of the slave's facets
 
+  /// For checkpoints: the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("tracker", tracker_); }
 
@@ -133,6 +137,7 @@ class ContactPass {
 /// The passes of a contact: body A's facets against B's, and, if asked, B's against A's with half the weight each.
 class SurfaceContactEngine {
  public:
+  /// Validates the law and builds the passes; throws what they throw.
   template <int D, GapLaw Law>
   void initialize(const Law& law, const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
                   const ParticleFields& b, int points_per_direction, bool two_pass) {
@@ -142,6 +147,7 @@ class SurfaceContactEngine {
     if (two_pass) back_.emplace<D>().initialize(cloud_b, b, cloud_a, a, points_per_direction, law.reach());
   }
 
+  /// Adds the forces of both passes; returns their energy, and the power of growing areas.
   template <GapLaw Law>
   TermEnergy apply(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area) {
     const double factor = back_.empty() ? 1.0 : 0.5;
@@ -150,6 +156,7 @@ class SurfaceContactEngine {
     return total;
   }
 
+  /// Gershgorin's bound of ω² at the gaps of the last call of apply, 1/s².
   template <GapLaw Law>
   double stiffness_rate(const Law& law, const ParticleFields& a, const ParticleFields& b) const {
     const double factor = back_.empty() ? 1.0 : 0.5;
@@ -168,6 +175,7 @@ class SurfaceContactEngine {
     return forth_.visit(std::forward<F>(f));
   }
 
+  /// For checkpoints: those of the passes.
   template <class Archive>
   void state(Archive& archive) {
     archive.part("forth", forth_);
@@ -181,22 +189,26 @@ class SurfaceContactEngine {
 /// A Contact in 2 and 3 dimensions from any GapLaw: `SurfaceContact{.law = MyLaw{…}}`.
 template <GapLaw Law>
 struct SurfaceContact {
-  Law law{};
+  Law law{};                                  ///< of the gap
   ContactArea area = ContactArea::reference;  ///< what the law's traction is per
   bool two_pass = false;                      ///< both bodies' facets are sampled, with half the weight each
   int points_per_direction = 2;               ///< Gauss points along each side of a facet, 1 to 4
   SurfaceContactEngine engine{};              ///< set by initialize()
 
+  /// Throws ParameterError where the law does, GeometryError for a cloud without facets or with periodic directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
                   const ParticleFields& b) {
     engine.initialize<D>(law, cloud_a, a, cloud_b, b, points_per_direction, two_pass);
   }
+  /// See SurfaceContactEngine.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) { return engine.apply(law, a, b, area); }
+  /// Bound of ω² at the present gaps, 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law, a, b);
   }
+  /// For checkpoints: the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("engine", engine); }
 };

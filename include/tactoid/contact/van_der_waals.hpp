@@ -17,17 +17,19 @@ namespace tactoid {
 /// All particles of one body against the facets of another: closest points, and gaps per particle.
 template <int D>
 struct ParticlesOnSurface {
-  FacetSurface<D> master;
-  ClosestPointTracker<D> tracker;
+  FacetSurface<D> master;        ///< the surface of the other body
+  ClosestPointTracker<D> tracker;  ///< follows the closest points on it
   std::vector<double> gaps;      ///< signed, per particle of the first body, m
   Field forces;                  ///< scratch: on the particles, N
   std::vector<double> energies;  ///< scratch: energy (J) or power (W) of each particle
+  /// Brings closest points and gaps to the present positions, m.
   void update(std::span<const Vector4> particles, std::span<const Vector4> surface) {
     tracker.update(master, particles, surface);
     gaps.resize(particles.size());
     const auto closest = tracker.closest();
     for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = closest[i].gap;
   }
+  /// For checkpoints: gaps, and the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) {
     archive.part("tracker", tracker);
@@ -50,11 +52,14 @@ struct VanDerWaals {
   bool reaction = false;                         ///< the opposite force on B's surface
   PerDimension<ParticlesOnSurface> particles{};  ///< set by initialize()
 
+  /// Throws ParameterError unless strength >= 0 and range > 0.
   void validate() const {
     require_non_negative("VanDerWaals.strength", strength, "N/kg");
     require_positive("VanDerWaals.range", range, "m");
   }
 
+  /// Throws ParameterError as validate(), GeometryError for a second cloud without facets or with periodic
+  /// directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>&, const ParticleFields& a, const PointCloud<D>& cloud_b,
@@ -65,10 +70,12 @@ struct VanDerWaals {
     p.update(a.position, b.position);
   }
 
+  /// Adds −m_I G e^{−g/d₀} n; returns the energy with `reaction`, else the power.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) {
     return particles.visit([&](auto& p) { return apply_to(p, a, b); });
   }
 
+  /// G/d₀ e^{−g/d₀} at the least gap, 1/s²; with `reaction` for the surface of B too.
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return particles.visit([&](const auto& p) { return rate_of(p, a, b); });
   }
@@ -77,6 +84,7 @@ struct VanDerWaals {
   [[nodiscard]] std::span<const double> gaps() const {
     return particles.visit([](const auto& p) { return std::span<const double>(p.gaps); });
   }
+  /// For checkpoints: gaps, and the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("particles", particles); }
 

@@ -11,11 +11,13 @@ namespace tactoid {
 /// or Dual again (second derivatives).
 template <class T, int N>
 struct Dual {
-  T value{};
-  std::array<T, N> derivative{};
+  T value{};                      ///< the number itself
+  std::array<T, N> derivative{};  ///< its derivative to each variable
 
   Dual() = default;
+  /// A constant: all derivatives are zero.
   Dual(double constant) : value(constant) { derivative.fill(T(0.0)); }  // NOLINT: constants convert
+  /// A constant of the inner scalar.
   Dual(const T& constant) requires(!std::is_same_v<T, double>) : value(constant) { derivative.fill(T(0.0)); }
 
   /// The variable number `i` at the value `v`.
@@ -25,6 +27,8 @@ struct Dual {
     return x;
   }
 
+  ///@{
+  /// Arithmetic by the rules of differentiation.
   Dual& operator+=(const Dual& b) {
     value += b.value;
     for (std::size_t i = 0; i < N; ++i) derivative[i] += b.derivative[i];
@@ -45,19 +49,28 @@ struct Dual {
     value *= inverse;
     for (std::size_t i = 0; i < N; ++i) derivative[i] = (derivative[i] - value * b.derivative[i]) * inverse;
     return *this;
+  ///@}
   }
+  ///@{
+  /// Arithmetic by the rules of differentiation.
   friend Dual operator+(Dual a, const Dual& b) { return a += b; }
   friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
   friend Dual operator*(Dual a, const Dual& b) { return a *= b; }
   friend Dual operator/(Dual a, const Dual& b) { return a /= b; }
   friend Dual operator-(const Dual& a) { return Dual(0.0) - a; }
+  ///@}
 
+  ///@{
+  /// Compares the values; derivatives do not count.
   friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
   friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
   friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
   friend bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
   friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+  ///@}
 
+  ///@{
+  /// The function, and its derivatives by the chain rule. abs has the slope +1 at 0.
   friend Dual sqrt(const Dual& a) {
     using std::sqrt;
     const T root = sqrt(a.value);
@@ -83,6 +96,7 @@ struct Dual {
     return chain(a, cos(a.value), -sin(a.value));
   }
   friend Dual abs(const Dual& a) { return a.value < T(0.0) ? -a : a; }
+  ///@}
 
  private:
   static Dual chain(const Dual& a, const T& f, const T& slope) {

@@ -5,6 +5,7 @@
 /// a product that is added becomes one instruction where the machine has it.
 namespace tactoid {
 
+/// Four doubles, 32 bytes.
 using Quad [[gnu::vector_size(32)]] = double;
 
 namespace detail {
@@ -12,8 +13,9 @@ namespace detail {
 using QuadInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 }  // namespace detail
 
-/// Four doubles from p on, to read or to assign to.
+/// Four doubles from p on.
 [[gnu::always_inline]] inline const detail::QuadInMemory& quad(const double* p) { return *reinterpret_cast<const detail::QuadInMemory*>(p); }
+/// The same to assign to.
 [[gnu::always_inline]] inline detail::QuadInMemory& quad(double* p) { return *reinterpret_cast<detail::QuadInMemory*>(p); }
 
 /// Rows become columns: a[i] of the four become the new a, and so on.

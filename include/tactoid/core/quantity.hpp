@@ -17,24 +17,31 @@ namespace tactoid {
 /// A unit of a quantity: its symbol and its size in SI, 10^exponent × factor. Powers of ten are kept as exponents, so
 /// that "5 us" and "5e-6" are the same number to the last bit.
 struct Unit {
-  std::string_view symbol;
-  int exponent = 0;
-  double factor = 1.0;
+  std::string_view symbol;  ///< as it is written: "um"
+  int exponent = 0;         ///< power of ten
+  double factor = 1.0;      ///< 1 unless the unit is no power of ten of the SI unit (degrees)
 };
 
 /// A kind of physical quantity with the units in which it may be written; the first of them is the SI unit.
 /// Programs may define their own beside those below.
 struct Quantity {
-  std::string_view name;
+  std::string_view name;        ///< in messages: "length"
   std::span<const Unit> units;  ///< empty for plain numbers
 
+  /// Symbol of the SI unit, empty for plain numbers.
   [[nodiscard]] constexpr std::string_view si() const { return units.empty() ? std::string_view{} : units[0].symbol; }
 
+  ///@{
+  /// A kind of quantity whose units the library knows.
   static const Quantity dimensionless, time, length, area, pressure, density, viscosity, surface_tension, force, mass,
       velocity, acceleration, energy, frequency, number_density, angle;
+  ///@}
 };
 
+/// The units in which each kind of quantity may be written, the SI unit first.
 namespace quantity_units {
+///@{
+/// Units of the quantity of that name; a degree in rad.
 inline constexpr double degree = 0.017453292519943295;
 inline constexpr Unit time[] = {{"s"}, {"ms", -3}, {"us", -6}, {"ns", -9}, {"ps", -12}};
 inline constexpr Unit length[] = {{"m"}, {"mm", -3}, {"um", -6}, {"nm", -9}};
@@ -51,6 +58,7 @@ inline constexpr Unit energy[] = {{"J"}, {"nJ", -9}, {"pJ", -12}, {"fJ", -15}, {
 inline constexpr Unit frequency[] = {{"Hz"}, {"kHz", 3}, {"MHz", 6}, {"GHz", 9}};
 inline constexpr Unit number_density[] = {{"1/m2"}, {"1/um2", 12}};
 inline constexpr Unit angle[] = {{"rad"}, {"deg", 0, degree}};
+///@}
 }  // namespace quantity_units
 
 inline constexpr Quantity Quantity::dimensionless{"a plain number", {}};

@@ -10,7 +10,7 @@ namespace tactoid {
 /// seed alone: not on the compiler, as those of the standard library's distributions do.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
+  explicit Random(std::uint64_t seed) : state_(seed) {}  ///< any number; the same seed gives the same sequence
 
   /// 64 random bits.
   std::uint64_t bits() {

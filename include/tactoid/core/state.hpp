@@ -14,10 +14,10 @@ namespace tactoid {
 
 /// Numbers with a name elsewhere: shape {} is a single one, {n} a list, {n, k} a list of vectors.
 struct StateArray {
-  std::vector<std::size_t> shape;
+  std::vector<std::size_t> shape;  ///< extents, the slowest first; empty for a single number
   std::vector<double> values;  ///< whole numbers too, which are exact up to 2⁵³
   bool whole = false;          ///< the numbers are whole ones
-  friend bool operator==(const StateArray&, const StateArray&) = default;
+  friend bool operator==(const StateArray&, const StateArray&) = default;  ///< exact: NaN differs from itself
 };
 
 /// The whole state of something, by name: "cell/displacement".
@@ -62,9 +62,10 @@ concept HasState = requires(T& t, Archive& archive) { t.state(archive); };
 /// Collects a state.
 class StateWriter {
  public:
-  static constexpr bool restoring = false;
-  explicit StateWriter(SavedState& saved) : saved_(saved) {}
+  static constexpr bool restoring = false;                    ///< this archive saves
+  explicit StateWriter(SavedState& saved) : saved_(saved) {}  ///< `saved` must outlive the writer
 
+  /// Keeps a number, or a vector or matrix of fixed size. Throws ParameterError for a name that is taken.
   template <class T>
   void operator()(std::string_view name, const T& x) {
     using Element = detail::StateElement<T>;
@@ -73,6 +74,7 @@ class StateWriter {
     array.whole = Element::whole;
     for (std::size_t k = 0; k < Element::size; ++k) array.values.push_back(Element::get(x, k));
   }
+  /// Keeps a list. Throws ParameterError for a name that is taken.
   template <class T>
   void operator()(std::string_view name, const std::vector<T>& list) {
     using Element = detail::StateElement<T>;
@@ -87,6 +89,7 @@ class StateWriter {
   /// A value that tells one composition from another.
   template <class T>
   void expect(std::string_view name, const T& x) { (*this)(name, x); }
+  /// Saves what x has as its state, under names that begin with "name/"; nothing where it has none.
   template <class T>
   void part(std::string_view name, T& x) {
     if constexpr (HasState<T, StateWriter>) {
@@ -110,9 +113,10 @@ class StateWriter {
 /// Gives a state back. Throws ParameterError, naming the value, where the saved state is that of something else.
 class StateReader {
  public:
-  static constexpr bool restoring = true;
-  explicit StateReader(const SavedState& saved) : saved_(saved) {}
+  static constexpr bool restoring = true;                           ///< this archive restores
+  explicit StateReader(const SavedState& saved) : saved_(saved) {}  ///< `saved` must outlive the reader
 
+  /// Gives back a number, or a vector or matrix of fixed size.
   template <class T>
   void operator()(std::string_view name, T& x) {
     using Element = detail::StateElement<T>;
@@ -131,6 +135,7 @@ class StateReader {
     for (std::size_t i = 0; i < list.size(); ++i)
       for (std::size_t k = 0; k < Element::size; ++k) Element::set(list[i], k, array.values[i * Element::size + k]);
   }
+  /// Restores what x has as its state from the names that begin with "name/"; nothing where it has none.
   template <class T>
   void part(std::string_view name, T& x) {
     if constexpr (HasState<T, StateReader>) {

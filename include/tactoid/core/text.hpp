@@ -35,7 +35,7 @@ namespace tactoid {
 }
 
 /// `text` in double quotes, fit for a message on one line: control characters and bytes that are no UTF-8
-/// appear as \xNN.
+/// appear as a backslash, x and two hexadecimal digits.
 [[nodiscard]] inline std::string in_quotes(std::string_view text) {
   constexpr char digits[] = "0123456789abcdef";
   std::string result = "\"";

@@ -9,6 +9,8 @@ inline namespace literals {
   constexpr double operator""_##suffix(long double v) { return static_cast<double>(v) * (factor); }             \
   constexpr double operator""_##suffix(unsigned long long v) { return static_cast<double>(v) * (factor); }
 
+///@{
+/// A number with this unit, in SI: `5_um` is 5e-6. For real and for whole numbers.
 TACTOID_UNIT(m, 1.0)
 TACTOID_UNIT(mm, 1e-3)
 TACTOID_UNIT(um, 1e-6)
@@ -26,6 +28,7 @@ TACTOID_UNIT(pN, 1e-12)
 TACTOID_UNIT(Pa_s, 1.0)
 TACTOID_UNIT(mN_per_m, 1e-3)
 TACTOID_UNIT(kg_per_m3, 1.0)
+///@}
 
 #undef TACTOID_UNIT
 

@@ -8,8 +8,8 @@ namespace tactoid {
 /// A string as a template argument.
 template <std::size_t N>
 struct FixedString {
-  char text[N]{};
-  consteval FixedString(const char (&s)[N]) { std::copy_n(s, N, text); }
+  char text[N]{};  ///< with its final zero
+  consteval FixedString(const char (&s)[N]) { std::copy_n(s, N, text); }  ///< from a literal
 };
 
 /// Always false. Written as `(requirement || unsatisfied<"sentence">)` inside a concept, it leaves the

@@ -14,7 +14,7 @@ namespace tactoid {
 /// ρᵈ is a density: J ρᵈ, per reference volume, does not change. D = γ/ρᵈ at J = 1, so a body has γ/ρᵈ = D J.
 template <ObjectiveRate Rate = Corotational>
 struct DirectorField {
-  using rate = Rate;
+  using rate = Rate;  ///< Corotational, Convected, or an own one
 
   double diffusivity = 1.0e-7;  ///< D = γ/ρᵈ at J = 1, m²/s
   double core_size = 0.5e-6;    ///< ε_d, m: the size of a defect's core
@@ -37,8 +37,8 @@ struct DirectorField {
     return ginzburg_landau(h, core_size) * T(-diffusivity);
   }
 
-  /// Diffusive flux in the reference configuration D ∇₀h C⁻¹, m/s: the weak form of D ∇²h is
-  /// − Σ_q V_q ρ₀ᵈ (D ∇₀h C⁻¹) ∇₀φ_I. It takes F⁻¹ and ∇₀h (1/m).
+  /// Diffusive flux in the reference configuration D ∇₀h C⁻¹, m/s, from F⁻¹ and ∇₀h (1/m). In the weak form it stands with
+  /// a factor J: −Σ_q V_q J (D ∇₀h C⁻¹) G_qI is V_I times the relaxation D J ∇²h of Dh/Dt.
   template <class T>
   [[nodiscard]] Tensor<T> flux(const Tensor<T>& F_inverse, const Tensor<T>& director_gradient) const {
     return (director_gradient * (F_inverse * F_inverse.transpose())) * T(diffusivity);

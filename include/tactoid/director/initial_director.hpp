@@ -31,7 +31,7 @@ class UniformDirector {
     if (!(direction.norm() > 0.0) || !std::isfinite(direction.norm()))
       reject("UniformDirector.direction", direction.norm(), "(its length)", "a finite vector that is not zero");
   }
-  [[nodiscard]] Vector3 operator()(const Vector3&) const { return director_; }
+  [[nodiscard]] Vector3 operator()(const Vector3&) const { return director_; }  ///< the direction
 
  private:
   Vector3 director_;
@@ -40,7 +40,8 @@ class UniformDirector {
 /// Away from a centre (m): a hedgehog. At the centre itself, its defect, the director is zero.
 class RadialDirector {
  public:
-  explicit RadialDirector(const Vector3& centre) : centre_(centre) {}
+  explicit RadialDirector(const Vector3& centre) : centre_(centre) {}  ///< m
+  /// The unit vector from the centre to X, m.
   [[nodiscard]] Vector3 operator()(const Vector3& X) const {
     const Vector3 away = X - centre_;
     const double distance = away.norm();
@@ -75,6 +76,7 @@ class RandomDirector {
       }
   }
 
+  /// The director at X, m; of unit length.
   [[nodiscard]] Vector3 operator()(const Vector3& X) const {
     Vector3 h = Vector3::Zero();
     for (const auto& mode : modes_)

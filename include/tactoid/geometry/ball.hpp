@@ -23,6 +23,7 @@ struct Ball {
   Point<3> center = Point<3>::Zero();        ///< m
   std::string core_region = "nucleus";       ///< name of the region of the core
   std::string shell_region = "cytoplasm";    ///< name of the region of the shells; may be that of the core
+  /// Throws ParameterError for a value that is not in its range.
   void validate() const {
     require_positive("Ball.radius", radius, "m");
     if (core_cells < 2) reject("Ball.core_cells", core_cells, "", "at least 2");

@@ -16,7 +16,7 @@ struct Bar {
   bool periodic = false;        ///< the far end is the near end
   double origin = 0.0;          ///< coordinate of the near end, m
   std::string region = "body";  ///< name of the region
-  inline void validate() const;
+  inline void validate() const;  ///< throws ParameterError for a value that is not in its range
 };
 
 /// A rectangle of equal cells.
@@ -26,7 +26,7 @@ struct Rectangle {
   std::array<bool, 2> periodic = {false, false};   ///< far sides are near sides
   Point<2> origin = Point<2>::Zero();              ///< corner with the least coordinates, m
   std::string region = "body";                     ///< name of the region
-  inline void validate() const;
+  inline void validate() const;                    ///< throws ParameterError for a value that is not in its range
 };
 
 /// A box of equal cells.
@@ -36,7 +36,7 @@ struct Box {
   std::array<bool, 3> periodic = {false, false, false};   ///< far sides are near sides
   Point<3> origin = Point<3>::Zero();                     ///< corner with the least coordinates, m
   std::string region = "body";                            ///< name of the region
-  inline void validate() const;
+  inline void validate() const;                           ///< throws ParameterError for a value that is not in its range
 };
 
 namespace detail {

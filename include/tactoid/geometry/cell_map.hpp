@@ -70,10 +70,11 @@ template <int D>
 template <int N>
 struct GaussRule {
   static_assert(N >= 1 && N <= 3, "Gauss rules have 1, 2 or 3 points per direction.");
-  std::array<double, static_cast<std::size_t>(N)> points{};
-  std::array<double, static_cast<std::size_t>(N)> weights{};
+  std::array<double, static_cast<std::size_t>(N)> points{};   ///< ascending, in (0, 1)
+  std::array<double, static_cast<std::size_t>(N)> weights{};  ///< they sum to 1
 };
 
+/// The rule with N = 1, 2 or 3 points.
 template <int N>
 [[nodiscard]] GaussRule<N> gauss_rule() {
   if constexpr (N == 1) {

@@ -20,8 +20,8 @@ struct Circle {
   double core_roundness = 0.5;           ///< 0: the core is a square, towards 1: a circle; in [0, 0.9]
   Point<2> center = Point<2>::Zero();    ///< m
   std::string region = "body";           ///< name of the region
-  void validate() const { validate_as("Circle"); }
-  void validate_as(const std::string& type) const {
+  void validate() const { validate_as("Circle"); }  ///< throws ParameterError for a value that is not in its range
+  void validate_as(const std::string& type) const {  ///< the same, with another name in the message
     require_positive(type + ".radius", radius, "m");
     if (core_cells < 1) reject(type + ".core_cells", core_cells, "", "at least 1");
     if (rings < 1) reject(type + ".rings", rings, "", "at least 1");
@@ -43,9 +43,10 @@ struct Disc {
   double core_roundness = 0.5;           ///< 0: the core is a square, towards 1: a circle; in [0, 0.9]
   Point<3> origin = Point<3>::Zero();    ///< centre of the top face, m
   std::string region = "body";           ///< name of the region
-  [[nodiscard]] Circle circle() const {
+  [[nodiscard]] Circle circle() const {  ///< one layer of it
     return {radius, core_cells, rings, growth, core_roundness, origin.head<2>(), region};
   }
+  /// Throws ParameterError for a value that is not in its range.
   void validate() const {
     circle().validate_as("Disc");
     require_positive("Disc.height", height, "m");

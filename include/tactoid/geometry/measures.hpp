@@ -16,8 +16,8 @@ namespace tactoid {
 /// adjacent cells of that region.
 template <int D>
 struct NodalCell {
-  Index particle = 0;
-  Index region = 0;
+  Index particle = 0;                         ///< to which it belongs
+  Index region = 0;                           ///< index into PointCloud::regions
   double volume = 0.0;                        ///< m³ (m², m)
   Point<D> centroid = Point<D>::Zero();       ///< m; near the particle in periodic directions
 };
@@ -154,8 +154,8 @@ template <int D>
 struct CellPoint {
   Point<D> position = Point<D>::Zero();  ///< m
   double weight = 0.0;                   ///< reference volume, m³ (m², m)
-  Index cell = 0;
-  Index region = 0;
+  Index cell = 0;                        ///< number of the cell
+  Index region = 0;                      ///< of the cell, an index into PointCloud::regions
 };
 
 /// Gauss points of all cells, N per direction, cell by cell. N = 2 and 3 sum to the exact volume for D = 3; in

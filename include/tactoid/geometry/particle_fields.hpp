@@ -23,6 +23,7 @@ struct TermEnergy {
   double potential = 0.0;         ///< stored, J
   double external_power = 0.0;    ///< power of forces that have no energy of their own in the balance, W
   double dissipated_power = 0.0;  ///< W, >= 0
+  /// Sums of several terms.
   TermEnergy& operator+=(const TermEnergy& other) {
     potential += other.potential;
     external_power += other.external_power;

@@ -24,9 +24,9 @@ namespace tactoid {
 template <int D>
 struct PointCloud {
   static_assert(D >= 1 && D <= 3, "A point cloud has 1, 2 or 3 dimensions.");
-  static constexpr int dimension = D;
-  using Cell = std::array<Index, (1u << D)>;
-  using Facet = std::array<Index, (1u << (D - 1))>;
+  static constexpr int dimension = D;                ///< D
+  using Cell = std::array<Index, (1u << D)>;         ///< 2^D vertices, in tensor order
+  using Facet = std::array<Index, (1u << (D - 1))>;  ///< 2^(D − 1) vertices, in tensor order
 
   std::vector<Point<D>> positions;                   ///< reference positions X, m
   std::vector<Cell> cells;                           ///< background cells
@@ -36,7 +36,7 @@ struct PointCloud {
   Point<D> period = Point<D>::Zero();                ///< period in each direction, m; 0 where not periodic
   bool axisymmetric = false;                         ///< a meridian section, D = 2 only
 
-  [[nodiscard]] std::size_t size() const { return positions.size(); }
+  [[nodiscard]] std::size_t size() const { return positions.size(); }  ///< number of particles
 
   /// Length of the ring through X, 2πR, m; 1 where the cloud is no meridian section.
   [[nodiscard]] double circumference(const Point<D>& X) const {

@@ -25,6 +25,7 @@ struct MeshOptions {
   /// Particles nearer to each other than this part of the shortest cell edge are refused as coincident; in [0, 1).
   double coincidence = 1e-6;
 
+  /// Throws ParameterError unless scale > 0 and coincidence is in [0, 1).
   void validate() const {
     require_positive("MeshOptions.scale", scale, "m");
     if (!(coincidence >= 0.0 && coincidence < 1.0)) reject("MeshOptions.coincidence", coincidence, "", "in [0, 1)");
@@ -35,7 +36,7 @@ struct MeshOptions {
 template <int D>
 struct MeshCell {
   std::vector<std::size_t> vertices;  ///< numbers of positions
-  std::size_t region = 0;
+  std::size_t region = 0;             ///< index into the names of the regions
   std::size_t tag = 0;  ///< by which the file names the cell
 };
 

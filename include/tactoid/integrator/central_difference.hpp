@@ -19,6 +19,7 @@ struct CentralDifference {
   double max_time_step = std::numeric_limits<double>::infinity();     ///< cap, s
   double min_time_step = 1e-15;                                       ///< floor, s: below it the run stops
 
+  /// Throws ParameterError unless safety is in (0, 1], time_step and min_time_step >= 0, max_time_step > 0.
   void validate() const {
     if (!(safety > 0.0 && safety <= 1.0)) reject("CentralDifference.safety", safety, "", "in (0, 1]");
     require_non_negative("CentralDifference.time_step", time_step, "s");
@@ -26,6 +27,7 @@ struct CentralDifference {
     if (!(max_time_step > 0.0)) reject("CentralDifference.max_time_step", max_time_step, "s", "positive");
   }
 
+  /// Checks the parameters; throws ParameterError for a fixed step above the stable one of the first state.
   template <class System>
   void initialize(System& system) const {
     validate();
@@ -35,6 +37,9 @@ struct CentralDifference {
                                        time_step, stable));
   }
 
+  /// One step: kick by the mean of the last step and this one, drift, evaluate; not beyond `until` (s). A step
+  /// that is not fixed is at most twice the one before. Throws ComputationError when the step falls below
+  /// min_time_step, or the stable step below the fixed one.
   template <class System>
   void step(System& system, double until) const {
     const double stable = system.largest_stable_time_step();

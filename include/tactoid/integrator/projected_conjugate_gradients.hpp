@@ -12,15 +12,17 @@ namespace tactoid {
 
 /// What projected_conjugate_gradients found.
 struct ConstrainedSolution {
-  Eigen::VectorXd x, multipliers;  ///< K x + Nᵀ multipliers = f
-  int iterations = 0;
+  Eigen::VectorXd x;            ///< the solution
+  Eigen::VectorXd multipliers;  ///< λ of K x + Nᵀ λ = f
+  int iterations = 0;     ///< of the conjugate gradients
   double residual = 0.0;  ///< relative to that of the start, in the norm of the preconditioner
+  /// How the iteration ended.
   enum class State {
-    converged,
+    converged,      ///< the residual is below what was asked
     not_converged,  ///< within the iterations allowed
     indefinite,     ///< a direction of negative or no curvature: K is not positive definite where N x = 0
     dependent       ///< the rows of N are linearly dependent
-  } state = State::not_converged;
+  } state = State::not_converged;  ///< x and multipliers mean something only where converged
 };
 
 /// Solves K x + Nᵀ λ = f, N x = g for a symmetric K that is positive definite where N x = 0, without factorising K:

@@ -51,7 +51,7 @@ concept EquilibriumProblem =
 
 /// What a static solution took.
 struct StaticReport {
-  int load_steps = 0;
+  int load_steps = 0;          ///< taken
   int iterations = 0;          ///< over all load steps
   double residual = 0.0;       ///< unbalanced force over the scale of the forces, at the end
   bool factorized_lu = false;  ///< the matrix was not positive definite and symmetric
@@ -78,10 +78,11 @@ struct StaticNewton {
   int max_iterations = 30;   ///< per load step
   int load_steps = 1;        ///< equal parts in which loads and prescribed displacements are applied
   int max_cuts = 12;         ///< halvings of a Newton step that inverts a point or does not reduce the residual
-  LinearSolver solver = LinearSolver::direct;
+  LinearSolver solver = LinearSolver::direct;  ///< of the linear systems
   double linear_tolerance = 1e-9;     ///< of the conjugate gradients, relative to the residual of the start; in (0, 1)
   int max_linear_iterations = 20000;  ///< of the conjugate gradients, per iteration of Newton's method
 
+  /// Throws ParameterError for a parameter out of the range that is given beside it.
   void validate() const {
     require_positive("StaticNewton.tolerance", tolerance);
     if (max_iterations < 1) reject("StaticNewton.max_iterations", max_iterations, "", "at least 1");

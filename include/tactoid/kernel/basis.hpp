@@ -10,8 +10,10 @@ namespace tactoid {
 template <int D, int Order>
 inline constexpr int monomial_count = Order == 1 ? 1 + D : 1 + D + D * (D + 1) / 2;
 
+/// The values of the monomials at a point.
 template <int D, int Order>
 using BasisVector = Eigen::Matrix<double, monomial_count<D, Order>, 1>;
+/// Moment matrices M = Σ w p pᵀ.
 template <int D, int Order>
 using BasisMatrix = Eigen::Matrix<double, monomial_count<D, Order>, monomial_count<D, Order>>;
 

@@ -14,13 +14,14 @@ namespace tactoid {
 /// D: dimension, Order: of the polynomials that are reproduced (1 or 2), WindowFunction: see windows.hpp.
 template <int D, int Order = 1, Window WindowFunction = CubicBSpline>
 struct Mls {
-  static constexpr int dimension = D;
-  static constexpr int order = Order;
-  static constexpr int basis_size = monomial_count<D, Order>;
-  using Window = WindowFunction;
+  static constexpr int dimension = D;                          ///< D
+  static constexpr int order = Order;                          ///< of the polynomials that are reproduced
+  static constexpr int basis_size = monomial_count<D, Order>;  ///< number of monomials
+  using Window = WindowFunction;                               ///< the weight function
 
   double support = Order == 1 ? 1.75 : 2.75;  ///< support radius per longest cell edge, > 1 (order 2: > 1.5)
 
+  /// Throws ParameterError unless support > 1 (order 2: > 1.5).
   void validate() const { detail::validate_support("Mls.support", support, Order); }
 
   /// φ_I(X) and ∇₀φ_I(X); zero, with an infinite condition number, where the moment matrix is singular.

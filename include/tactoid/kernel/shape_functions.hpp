@@ -21,18 +21,19 @@ namespace tactoid {
 /// offsets[q + 1], sorted by particle.
 template <int D>
 struct ShapeFunctionTable {
-  std::vector<std::size_t> offsets = {0};
+  std::vector<std::size_t> offsets = {0};  ///< one more than points
   std::vector<Index> indices;           ///< particles I
   std::vector<double> values;           ///< φ_I(X_q); empty in a table of value-based gradients
   std::vector<Point<D>> gradients;      ///< ∇₀φ_I(X_q), or G_qI, 1/m
   double largest_condition = 0.0;       ///< largest condition number of the moment matrices
 
-  [[nodiscard]] std::size_t points() const { return offsets.size() - 1; }
+  [[nodiscard]] std::size_t points() const { return offsets.size() - 1; }  ///< number of points
 };
 
 /// How a table of shape functions is checked.
 struct ShapeFunctionOptions {
   double condition_limit = 1e10;  ///< largest condition number that is accepted, > 1
+  /// Throws ParameterError unless condition_limit > 1.
   void validate() const {
     if (!(condition_limit > 1.0)) reject("ShapeFunctionOptions.condition_limit", condition_limit, "", "above 1");
   }

@@ -19,11 +19,13 @@ concept Window =
 
 /// Cubic B-spline, twice continuously differentiable; 2/3 at q = 0.
 struct CubicBSpline {
+  /// w(q), q >= 0: 2/3 − 4 q² (1 − q) up to ½, 4/3 (1 − q)³ beyond.
   [[nodiscard]] static double value(double q) {
     if (q >= 1.0) return 0.0;
     const double r = 1.0 - q;
     return q <= 0.5 ? 2.0 / 3.0 - 4.0 * q * q * r : 4.0 / 3.0 * r * r * r;
   }
+  /// dw/dq.
   [[nodiscard]] static double slope(double q) {
     if (q >= 1.0) return 0.0;
     const double r = 1.0 - q;
@@ -33,10 +35,12 @@ struct CubicBSpline {
 
 /// Quintic B-spline, four times continuously differentiable; 11/20 at q = 0.
 struct QuinticBSpline {
+  /// w(q) = {(3 − s)₊⁵ − 6 (2 − s)₊⁵ + 15 (1 − s)₊⁵}/120 with s = 3 q.
   [[nodiscard]] static double value(double q) {
     const double s = 3.0 * q;
     return (power5(3.0 - s) - 6.0 * power5(2.0 - s) + 15.0 * power5(1.0 - s)) / 120.0;
   }
+  /// dw/dq.
   [[nodiscard]] static double slope(double q) {
     const double s = 3.0 * q;
     return -15.0 * (power4(3.0 - s) - 6.0 * power4(2.0 - s) + 15.0 * power4(1.0 - s)) / 120.0;
@@ -50,11 +54,13 @@ struct QuinticBSpline {
 /// Wendland's compactly supported function of smoothness C² (positive definite up to three dimensions):
 /// (1 − q)⁴ (4 q + 1); H. Wendland, Adv. Comput. Math. 1995, 4, 389.
 struct WendlandC2 {
+  /// w(q), q >= 0.
   [[nodiscard]] static double value(double q) {
     if (q >= 1.0) return 0.0;
     const double r2 = (1.0 - q) * (1.0 - q);
     return r2 * r2 * (4.0 * q + 1.0);
   }
+  /// dw/dq = −20 q (1 − q)³.
   [[nodiscard]] static double slope(double q) {
     if (q >= 1.0) return 0.0;
     const double r = 1.0 - q;

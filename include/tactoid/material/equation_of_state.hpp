@@ -27,10 +27,12 @@ concept EquationOfState =
 /// p = p_ref + K (1 − J)/J,   W = −p_ref (J − 1) + K (J − 1 − ln J): pressure linear in the density. Tension is
 /// bounded by K.
 struct ReciprocalPressure {
+  /// p at J > 0, Pa.
   template <class T>
   [[nodiscard]] static T pressure(const T& J, double reference_pressure, double bulk_modulus) {
     return T(reference_pressure) + T(bulk_modulus) * (T(1.0) - J) / J;
   }
+  /// W at J > 0, J per reference volume; NaN for J < 0.
   template <class T>
   [[nodiscard]] static T energy(const T& J, double reference_pressure, double bulk_modulus) {
     using std::log;
@@ -41,11 +43,13 @@ struct ReciprocalPressure {
 
 /// p = p_ref − K ln J / J,   W = −p_ref (J − 1) + ½ K (ln J)²: the volumetric law of the solids here, with K = 4 λ.
 struct LogarithmicPressure {
+  /// p at J > 0, Pa; NaN for J < 0.
   template <class T>
   [[nodiscard]] static T pressure(const T& J, double reference_pressure, double bulk_modulus) {
     using std::log;
     return T(reference_pressure) - T(bulk_modulus) * log(J) / J;
   }
+  /// W at J > 0, J per reference volume; NaN for J < 0.
   template <class T>
   [[nodiscard]] static T energy(const T& J, double reference_pressure, double bulk_modulus) {
     using std::log;

@@ -24,7 +24,7 @@ concept MaterialAtPosition =
 /// It is evaluated once per quadrature point, when a body is composed; each law that it returns is validated then.
 template <MaterialAtPosition F>
 struct Graded {
-  using Law = std::remove_cvref_t<std::invoke_result_t<const F&, const Vector3&>>;
+  using Law = std::remove_cvref_t<std::invoke_result_t<const F&, const Vector3&>>;  ///< what the function returns
 
   F law_at;  ///< X (m, three components in every dimension) -> law
 
@@ -32,8 +32,10 @@ struct Graded {
   [[nodiscard]] Law at(const Vector3& X) const { return law_at(X); }
 };
 
+/// True for a Graded material.
 template <class>
 inline constexpr bool is_graded = false;
+/// Of Graded itself.
 template <class F>
 inline constexpr bool is_graded<Graded<F>> = true;
 

@@ -96,12 +96,14 @@ concept Material =
      unsatisfied<"A Material has `T energy(const Tensor<T>& F) const`, generic over its scalar T, or `Response<T> "
                  "response(const PointState<T>&, History<T>&) const`.">);
 
+/// Whether the law M says that it needs Ḟ.
 template <class M>
 inline constexpr bool uses_rate = [] {
   if constexpr (requires { M::uses_rate; }) return bool(M::uses_rate);
   else return false;
 }();
 
+/// Whether the law M says that it needs the director.
 template <class M>
 inline constexpr bool uses_director = [] {
   if constexpr (requires { M::uses_director; }) return bool(M::uses_director);
@@ -114,12 +116,14 @@ concept DirectorMaterial =
     Material<M> &&
     (uses_director<M> || unsatisfied<"A DirectorMaterial says `static constexpr bool uses_director = true`.">);
 
+/// What a law says of its viscosity (the longitudinal modulus, Pa·s); 0 where it says nothing.
 template <class M>
 [[nodiscard]] double viscosity_modulus(const M& m) {
   if constexpr (requires { { m.viscosity_modulus() } -> std::convertible_to<double>; }) return m.viscosity_modulus();
   else return 0.0;
 }
 
+/// What a law says of its shear modulus at small strain, Pa; 0 where it says nothing: then it counts as a fluid.
 template <class M>
 [[nodiscard]] double shear_modulus(const M& m) {
   if constexpr (requires { { m.shear_modulus() } -> std::convertible_to<double>; }) return m.shear_modulus();

@@ -23,8 +23,8 @@ namespace tactoid {
 /// Where J ≤ 0 the stress is meaningless: the energy is NaN for J < 0, the stress is not finite for J = 0.
 template <EquationOfState State = ReciprocalPressure>
 struct NematicGel {
-  static constexpr bool uses_rate = true;
-  static constexpr bool uses_director = true;
+  static constexpr bool uses_rate = true;    ///< needs Ḟ
+  static constexpr bool uses_director = true;  ///< needs h and ∇₀h
   static constexpr bool dissipative = true;  ///< no closed cycle yields work (activity apart)
 
   double density = 1000.0;               ///< ρ₀, kg/m³
@@ -56,6 +56,7 @@ struct NematicGel {
     return State::pressure(J, reference_pressure, bulk_modulus);
   }
 
+  /// P = J σ F⁻ᵀ, the energy of p, 2 μ J d:d and the active power, at one point or several; eqn (4).
   template <class T>
   [[nodiscard]] Response<T> response(const PointState<T>& point, NoHistory<T>&) const {
     const Inversion<T> F = invert(point.deformation_gradient);

@@ -18,8 +18,9 @@ struct Region {
   static_assert(Material<typename detail::LawOf<M>::type>, "A Region is made of a Material or a Graded one.");
 
   std::string name;  ///< name of the region in PointCloud::regions
-  M material;
+  M material;        ///< a Material, or a Graded one
 };
+/// Deduced from any kind of text and the material.
 template <class Name, class M>
 Region(Name, M) -> Region<M>;
 
@@ -27,11 +28,11 @@ Region(Name, M) -> Region<M>;
 template <class... M>
 struct Materials {
   static_assert(sizeof...(M) > 0, "Materials needs at least one Region.");
-  static constexpr std::size_t size = sizeof...(M);
+  static constexpr std::size_t size = sizeof...(M);  ///< number of regions
 
-  std::tuple<Region<M>...> regions;
+  std::tuple<Region<M>...> regions;  ///< with their names
 
-  explicit Materials(Region<M>... region) : regions(std::move(region)...) {}
+  explicit Materials(Region<M>... region) : regions(std::move(region)...) {}  ///< names must differ: see validate()
 
   /// Calls f(i, region) for each region, in order; i is a std::size_t.
   template <class Function>

@@ -27,7 +27,8 @@ concept BracketInvariant =
 
 /// I = I₃, as Zeng and Li print it. At rest I₃ = 1, so the bracket is A₁ − 2 A₂, and it changes with volume only.
 struct ThirdInvariant {
-  static constexpr double at_rest = 1.0;
+  static constexpr double at_rest = 1.0;  ///< of I₃
+  /// I₃ = det C.
   template <class T>
   [[nodiscard]] static T of(const Tensor<T>& C) {
     return third_invariant(C);
@@ -37,7 +38,8 @@ struct ThirdInvariant {
 /// I = I₂, as in Yang, Shim and Lim, Int. J. Impact Eng. 2000, 24, 545. At rest I₂ = 3, so the bracket is A₁, and it
 /// grows with shear and stretch too.
 struct SecondInvariant {
-  static constexpr double at_rest = 3.0;
+  static constexpr double at_rest = 3.0;  ///< of I₂
+  /// I₂ = ½ [(tr C)² − tr C²].
   template <class T>
   [[nodiscard]] static T of(const Tensor<T>& C) {
     return second_invariant(C);
@@ -69,7 +71,7 @@ template <Material Elastic = ModifiedMooneyRivlin, BracketInvariant Invariant = 
   requires(detail::HasEnergy<Elastic> ||
            unsatisfied<"The elastic part of YangVisco has `T energy(const Tensor<T>& F) const`.">)
 struct YangVisco {
-  static constexpr bool uses_rate = true;
+  static constexpr bool uses_rate = true;  ///< the stress power of the branch needs Ḟ
 
   Elastic elastic = {};              ///< the hyperelastic part
   double a1 = 3.5e6;                 ///< A₁, Pa
@@ -81,6 +83,7 @@ struct YangVisco {
   template <class T>
   using Symmetric = Eigen::Matrix<T, 6, 1>;
 
+  /// What a point keeps: the branch and the strain up to which it has come.
   template <class T>
   struct History {
     Symmetric<T> branch = Symmetric<T>::Zero();  ///< Q, Pa
@@ -111,6 +114,8 @@ struct YangVisco {
     return std::sqrt(c * c + std::max(0.0, bracket_at_rest()) / density);
   }
 
+  /// Advances the history by PointState::time_step to F, and answers P = F S + J F Q, the energy of `elastic`, and
+  /// the stress power of the branch.
   template <class T>
   [[nodiscard]] Response<T> response(const PointState<T>& point, History<T>& history) const {
     const Tensor<T>& F = point.deformation_gradient;

@@ -19,7 +19,7 @@ namespace tactoid {
 
 /// A point that a search has found.
 struct Neighbor {
-  Index index = 0;
+  Index index = 0;        ///< number of the point
   double distance = 0.0;  ///< m
 };
 
@@ -36,9 +36,11 @@ class NeighborSearch {
   explicit NeighborSearch(const Positions& positions, const Point<D>& period = Point<D>::Zero()) : period_(period) {
     rebuild(positions);
   }
+  /// Builds a tree of its own.
   NeighborSearch(const NeighborSearch& other) : period_(other.period_) { rebuild(other.data_->points); }
+  /// Leaves `other` without a tree: assign to it or let it go.
   NeighborSearch(NeighborSearch&& other) noexcept = default;
-  NeighborSearch& operator=(NeighborSearch other) noexcept {
+  NeighborSearch& operator=(NeighborSearch other) noexcept {  ///< by copy or by move
     period_ = other.period_;
     std::swap(data_, other.data_);
     return *this;
@@ -63,7 +65,7 @@ class NeighborSearch {
     data_->tree.buildIndex();
   }
 
-  [[nodiscard]] std::size_t size() const { return data_->points.size(); }
+  [[nodiscard]] std::size_t size() const { return data_->points.size(); }  ///< number of points
 
   /// All points with distance < `radius` from `x`, sorted by index. `radius` in m, >= 0, and at most half a period:
   /// throws ParameterError.

@@ -16,7 +16,8 @@ struct NeighborTable {
   std::vector<std::size_t> offsets = {0};  ///< row q is indices[offsets[q]] … indices[offsets[q + 1] − 1]
   std::vector<Index> indices;              ///< particles, sorted in each row
 
-  [[nodiscard]] std::size_t rows() const { return offsets.size() - 1; }
+  [[nodiscard]] std::size_t rows() const { return offsets.size() - 1; }  ///< number of query points
+  /// The particles whose support covers query point q, ascending.
   [[nodiscard]] std::span<const Index> row(std::size_t q) const {
     return {indices.data() + offsets[q], offsets[q + 1] - offsets[q]};
   }

@@ -40,8 +40,8 @@ class Probe {
     }
   }
 
-  [[nodiscard]] std::size_t size() const { return points_.size(); }
-  [[nodiscard]] const std::vector<Point<D>>& points() const { return points_; }
+  [[nodiscard]] std::size_t size() const { return points_.size(); }              ///< number of points
+  [[nodiscard]] const std::vector<Point<D>>& points() const { return points_; }  ///< reference positions, m
   /// Shape functions at the points.
   [[nodiscard]] const ShapeFunctionTable<D>& shapes() const { return shapes_; }
 
@@ -71,6 +71,7 @@ class Probe {
   ShapeFunctionTable<D> shapes_;
 };
 
+/// Deduced from the body.
 template <class Body>
 Probe(const Body&, std::vector<Point<Body::dimension>>) -> Probe<Body::dimension>;
 

@@ -56,9 +56,11 @@ template <class Body>
 
 /// Mean (weighted by reference volume) and largest value over the points of a region.
 struct RegionStatistics {
-  double mean = 0.0;
-  double max = 0.0;
+  double mean = 0.0;  ///< weighted by reference volume
+  double max = 0.0;   ///< 0 where no value is positive
 };
+/// Statistics of values at the quadrature points (stress_fields().point_effective_stress) over a region, its number
+/// in Materials{…}; zero for a region without points.
 [[nodiscard]] inline RegionStatistics region_statistics(const PointTable& table, const std::vector<double>& at_points,
                                                         Index region) {
   RegionStatistics r;

@@ -26,7 +26,7 @@ namespace tactoid {
 struct Checkpoint {
   std::string program;     ///< name of the program, or of what was composed
   std::string parameters;  ///< its parameters, as it reads them itself
-  SavedState state;
+  SavedState state;        ///< as save_state gives it
 };
 
 /// Version of the files that write_checkpoint writes; read_checkpoint reads this one.

@@ -30,6 +30,7 @@ namespace detail {
 /// there. Without commit() nothing remains. Every failure throws FileError with the path and the system's reason.
 class AtomicFile {
  public:
+  /// Opens the file beside `path`.
   explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), temporary_(path_) {
     temporary_ += ".part";
     file_ = std::fopen(temporary_.c_str(), "wb");
@@ -43,9 +44,11 @@ class AtomicFile {
     std::remove(temporary_.c_str());
   }
 
+  /// Appends bytes.
   void write(const void* bytes, std::size_t count) {
     if (count > 0 && std::fwrite(bytes, 1, count, file_) != count) detail::fail_file("write", path_, errno);
   }
+  /// Appends a text as it is.
   void write(std::string_view text) { write(text.data(), text.size()); }
 
   /// With `to_disc` the content is on the disc before it takes the place of a former file, should the power fail.

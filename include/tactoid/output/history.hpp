@@ -46,7 +46,7 @@ class HistoryWriter {
     if (!keep_until) put(head + '\n');
   }
 
-  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }  ///< their names
 
   /// Writes one line: one value per column. Throws ParameterError for another count, FileError.
   void write(std::span<const double> values) {

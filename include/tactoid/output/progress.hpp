@@ -20,7 +20,7 @@ namespace tactoid {
 /// and writes at most five times per second.
 class Progress {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = std::chrono::steady_clock;  ///< of the time to go
 
   /// `total` and `start`: simulated times of the end and of the beginning, s.
   explicit Progress(double total, double start = 0.0, std::FILE* stream = stderr)

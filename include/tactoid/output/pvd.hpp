@@ -17,6 +17,7 @@ namespace tactoid {
 /// that an interrupted run can be read up to its last frame.
 class PvdSeries {
  public:
+  /// Nothing is written before the first grid.
   explicit PvdSeries(std::filesystem::path path) : path_(std::move(path)) {}
 
   /// Goes on with a series that is there: the grids up to this time (s) stay in it.

@@ -21,6 +21,7 @@ namespace tactoid {
 /// U+FFFD.
 class Summary {
  public:
+  /// Sets a member, anew if it is there: a number, bool, text, a std::vector of them, or a Summary.
   template <class T>
   Summary& set(std::string_view key, const T& value) {
     std::string json = to_json(value);
@@ -33,6 +34,7 @@ class Summary {
     return *this;
   }
 
+  /// The object as text; lines after the first begin with `indent` blanks.
   [[nodiscard]] std::string json(int indent = 0) const {
     if (members_.empty()) return "{}";
     const std::string margin(static_cast<std::size_t>(indent), ' ');

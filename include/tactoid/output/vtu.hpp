@@ -78,7 +78,7 @@ struct VtkCell<8> {
 /// Everything is copied when it is given. Data is appended in raw binary: no loss, fast to read.
 class VtuGrid {
  public:
-  explicit VtuGrid(double time = 0.0) : time_(time) {}
+  explicit VtuGrid(double time = 0.0) : time_(time) {}  ///< s, as ParaView shows it
 
   /// The points; those of one or two dimensions get zeros for the missing coordinates.
   template <class P>
@@ -88,6 +88,7 @@ class VtuGrid {
     for (const P& x : positions)
       for (Eigen::Index k = 0; k < 3; ++k) points_.push_back(k < x.size() ? x[k] : 0.0);
   }
+  /// The points, from a list.
   template <class P>
   void points(const std::vector<P>& positions) {
     points(std::span<const P>(positions));
@@ -103,6 +104,7 @@ class VtuGrid {
       types_.push_back(detail::VtkCell<N>::type);
     }
   }
+  /// Cells, from a list.
   template <std::size_t N>
   void cells(const std::vector<std::array<Index, N>>& corners, Index offset = 0) {
     cells(std::span<const std::array<Index, N>>(corners), offset);
@@ -117,8 +119,8 @@ class VtuGrid {
     }
   }
 
-  [[nodiscard]] std::size_t point_count() const { return points_.size() / 3; }
-  [[nodiscard]] std::size_t cell_count() const { return types_.size(); }
+  [[nodiscard]] std::size_t point_count() const { return points_.size() / 3; }  ///< points given
+  [[nodiscard]] std::size_t cell_count() const { return types_.size(); }        ///< cells given, vertices included
 
   /// An array over the points: numbers (`components` of them per point), vectors or tensors.
   template <class Values>

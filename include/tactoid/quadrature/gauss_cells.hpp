@@ -28,10 +28,13 @@ struct GaussCells {
   double condition_limit = 1e10;      ///< largest condition number of a moment matrix that is accepted
   std::size_t points_per_chunk = 0;  ///< points that one thread adds at a time; 0: by the size of the body
 
+  /// Throws ParameterError unless condition_limit > 0.
   void validate() const { require_positive("GaussCells.condition_limit", condition_limit); }
 
-  [[nodiscard]] Stabilization stabilization(double) const { return {}; }
+  [[nodiscard]] Stabilization stabilization(double) const { return {}; }  ///< none: the rule is used as it is
 
+  /// The table of a cloud, with φ_I(X_q) and φ_J(X_I). Throws ParameterError, and GeometryError where a moment matrix
+  /// is singular or beyond condition_limit.
   template <Kernel K>
   [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel) const {
     constexpr int D = K::dimension;

@@ -50,6 +50,7 @@ struct NodalCentroids {
   double consistency_tolerance = 1e-13; ///< of the column conditions; 0: no correction (for comparisons only)
   std::size_t points_per_chunk = 0;  ///< points that one thread adds at a time; 0: by the size of the body
 
+  /// Throws ParameterError for a value that is not in its range.
   void validate() const {
     require_non_negative("NodalCentroids.solid_ratio", solid_ratio);
     if (!(stabilization_reach > 1.0) || !std::isfinite(stabilization_reach))
@@ -61,11 +62,14 @@ struct NodalCentroids {
     require_non_negative("NodalCentroids.consistency_tolerance", consistency_tolerance);
   }
 
+  /// Of a region whose law has this shear modulus, Pa; 0 is a fluid.
   [[nodiscard]] Stabilization stabilization(double shear_modulus) const {
     if (shear_modulus > 0.0) return {solid_ratio * shear_modulus, solid_damping_time};
     return {fluid_modulus, fluid_modulus > 0.0 ? fluid_viscosity / fluid_modulus : 0.0};
   }
 
+  /// The table of a cloud. Throws ParameterError; GeometryError where a moment matrix is singular or beyond
+  /// condition_limit, naming point and neighbours; ComputationError where the columns cannot be made consistent.
   template <Kernel K>
   [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel) const {
     constexpr int D = K::dimension;

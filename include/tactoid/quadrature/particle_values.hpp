@@ -11,7 +11,7 @@ namespace tactoid {
 class ParticleValues {
  public:
   ParticleValues() = default;
-  explicit ParticleValues(const ValueRows& rows) : rows_(rows) {
+  explicit ParticleValues(const ValueRows& rows) : rows_(rows) {  ///< φ_J(X_I), a row per particle; empty: the identity
     if (rows_.empty()) return;
     // The transpose by rows of the unknowns: each sum is made by one thread, in a fixed order.
     const std::size_t n = rows_.offsets.size() - 1;
@@ -29,8 +29,8 @@ class ParticleValues {
       }
   }
 
-  [[nodiscard]] bool identity() const { return rows_.empty(); }
-  [[nodiscard]] const ValueRows& rows() const { return rows_; }
+  [[nodiscard]] bool identity() const { return rows_.empty(); }  ///< unknowns are values at the particles
+  [[nodiscard]] const ValueRows& rows() const { return rows_; }  ///< φ_J(X_I); empty where that is the identity
 
   /// Values at the particles.
   [[nodiscard]] Field evaluate(const Field& unknowns) const {

@@ -18,17 +18,17 @@ struct alignas(32) TableEntry {
 
 /// Compressed rows of (particle, value) pairs: a linear map from the unknowns to values.
 struct ValueRows {
-  std::vector<std::size_t> offsets;
-  std::vector<Index> particles;
-  std::vector<double> values;
-  [[nodiscard]] bool empty() const { return offsets.empty(); }
+  std::vector<std::size_t> offsets;                             ///< row i: [offsets[i], offsets[i + 1]) of the lists below; empty: the identity
+  std::vector<Index> particles;                                 ///< numbers of the unknowns
+  std::vector<double> values;                                   ///< beside `particles`
+  [[nodiscard]] bool empty() const { return offsets.empty(); }  ///< no map: unknowns are values
 };
 
 /// A contiguous range of points of one region whose contributions are added by one thread.
 struct PointChunk {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  Index region = 0;
+  std::size_t begin = 0;  ///< first point
+  std::size_t end = 0;    ///< one past the last point
+  Index region = 0;       ///< of all its points
 };
 
 /// Where the weak form is sampled and how: quadrature points, their reference volumes and the flat table of
@@ -64,9 +64,10 @@ struct PointTable {
   std::vector<PointChunk> chunks;               ///< sorted by colour
   std::vector<std::size_t> color_offsets;       ///< chunks of colour c: [color_offsets[c], color_offsets[c + 1])
 
-  [[nodiscard]] std::size_t points() const { return volume.size(); }
-  [[nodiscard]] std::size_t pairs() const { return entries.size(); }
-  [[nodiscard]] bool value_based() const { return point_values.empty(); }
+  [[nodiscard]] std::size_t points() const { return volume.size(); }       ///< number of quadrature points
+  [[nodiscard]] std::size_t pairs() const { return entries.size(); }       ///< number of entries, padding included
+  [[nodiscard]] bool value_based() const { return point_values.empty(); }  ///< unknowns are values at the particles
+  /// The entries of point q.
   [[nodiscard]] std::span<const TableEntry> row(std::size_t q) const {
     return {entries.data() + offsets[q], offsets[q + 1] - offsets[q]};
   }

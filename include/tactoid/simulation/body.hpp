@@ -28,7 +28,7 @@ namespace tactoid {
 
 /// A body without a director field.
 struct NoDirector {
-  void validate() const {}
+  void validate() const {}  ///< nothing can be wrong
 };
 
 /// Energies and powers of a body at one instant, in J and W.
@@ -37,6 +37,7 @@ struct BodyTotals {
   double stabilization_energy = 0.0;  ///< of the quadrature's stabilisation
   double dissipated_power = 0.0;      ///< of the laws, and of the damping of the stabilisation
   double active_power = 0.0;          ///< given to the motion by stresses without an energy
+  /// Sums of the parts: chunks of one body, or several bodies.
   BodyTotals& operator+=(const BodyTotals& other) {
     strain_energy += other.strain_energy;
     stabilization_energy += other.stabilization_energy;
@@ -48,8 +49,8 @@ struct BodyTotals {
 
 /// Cauchy stress and volume ratio at a quadrature point.
 struct PointSample {
-  Tensor3 cauchy;
-  double J = 1.0;
+  Tensor3 cauchy;  ///< Cauchy stress σ, Pa
+  double J = 1.0;  ///< det F
 };
 
 /// A deformable body: a point cloud, the kernel and the quadrature that sample it, a law for each of its regions,
@@ -63,17 +64,19 @@ struct PointSample {
 template <class KernelType, class QuadratureType, class MaterialsType, class Director = NoDirector>
 class Body;
 
+/// The implementation of Body, with the laws of its regions known one by one: each has a loop of its own.
 template <class KernelType, class QuadratureType, class... Ms, class Director>
 class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
  public:
   // Asserted here and not on the template's parameters: so compilers print which requirement is missing.
   static_assert(Kernel<KernelType>, "The third argument of a Body is a Kernel.");
   static_assert(Quadrature<QuadratureType, KernelType>, "The fourth argument of a Body is a Quadrature for its kernel.");
-  static constexpr int dimension = KernelType::dimension;
-  static constexpr bool has_director = !std::is_same_v<Director, NoDirector>;
+  static constexpr int dimension = KernelType::dimension;                      ///< 1, 2 or 3, that of the kernel and the cloud
+  static constexpr bool has_director = !std::is_same_v<Director, NoDirector>;  ///< a director field is carried along
   static_assert(has_director || !(uses_director<LawOf<Ms>> || ...),
                 "A material of this body needs a director: give the Body a DirectorField and an initial director.");
 
+  /// A body without a director field; throws ParameterError and GeometryError as the class says.
   Body(std::string name, PointCloud<dimension> cloud, KernelType kernel, QuadratureType quadrature, Materials<Ms...> materials)
     requires(!has_director)
       : Body(std::move(name), std::move(cloud), kernel, quadrature, std::move(materials), Director{}, NoDirector{}) {}
@@ -127,22 +130,23 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::vector<char> anchored;  ///< 1 where the director is held (anchoring); empty or one per particle
 
   // --- parts -------------------------------------------------------------------------------------------------
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] const PointCloud<dimension>& cloud() const { return cloud_; }
-  [[nodiscard]] const KernelType& kernel() const { return kernel_; }
-  [[nodiscard]] const QuadratureType& quadrature() const { return quadrature_; }
-  [[nodiscard]] const PointTable& table() const { return table_; }
-  [[nodiscard]] const Director& director_law() const { return director_law_; }
+  [[nodiscard]] const std::string& name() const { return name_; }                        ///< begins the messages about this body
+  [[nodiscard]] const PointCloud<dimension>& cloud() const { return cloud_; }            ///< the reference configuration
+  [[nodiscard]] const KernelType& kernel() const { return kernel_; }                     ///< with its support
+  [[nodiscard]] const QuadratureType& quadrature() const { return quadrature_; }         ///< with its stabilisation
+  [[nodiscard]] const PointTable& table() const { return table_; }                       ///< points, volumes and gradients, as the quadrature built them
+  [[nodiscard]] const Director& director_law() const { return director_law_; }           ///< parameters of the director field
   [[nodiscard]] const std::vector<double>& masses() const { return masses_; }            ///< lumped, kg
   [[nodiscard]] const std::vector<double>& nodal_volumes() const { return volumes_; }    ///< reference, m³
-  [[nodiscard]] const ParticleValues& particle_values() const { return particle_values_; }
-  [[nodiscard]] std::size_t size() const { return table_.particles; }
+  [[nodiscard]] const ParticleValues& particle_values() const { return particle_values_; }  ///< from unknowns to values at the particles
+  [[nodiscard]] std::size_t size() const { return table_.particles; }                    ///< number of particles
 
   /// Calls f(RegionLaw&, index of the region) for every region.
   template <class F>
   void for_each_region(const F& f) {
     std::apply([&](auto&... region) { Index r = 0; (f(region, r++), ...); }, laws_);
   }
+  /// Calls f(const RegionLaw&, index of the region) for every region.
   template <class F>
   void for_each_region(const F& f) const {
     std::apply([&](const auto&... region) { Index r = 0; (f(region, r++), ...); }, laws_);
@@ -522,8 +526,10 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::vector<std::vector<Index>> points_of_particle_;
 };
 
+/// Deduced without a director field.
 template <class K, class Q, class... Ms>
 Body(std::string, PointCloud<K::dimension>, K, Q, Materials<Ms...>) -> Body<K, Q, Materials<Ms...>, NoDirector>;
+/// Deduced with a director field: its law and the director at the start are the last arguments.
 template <class K, class Q, class... Ms, class Director, class Initial>
 Body(std::string, PointCloud<K::dimension>, K, Q, Materials<Ms...>, Director, Initial)
     -> Body<K, Q, Materials<Ms...>, Director>;

@@ -7,9 +7,14 @@ namespace tactoid {
 
 /// The values of a body at its particles, which contacts, boundary terms and observers see.
 struct BodyFields {
-  Field reference, position, velocity, force;
-  std::vector<double> mass, volume;
+  Field reference;  ///< X, m
+  Field position;   ///< x, m
+  Field velocity;   ///< v at the present instant, m/s
+  Field force;      ///< of contacts and boundary terms, N
+  std::vector<double> mass;    ///< lumped, kg
+  std::vector<double> volume;  ///< reference nodal volume, m³
 
+  /// The reference configuration of a body, at rest.
   template <class Body>
   void prepare(const Body& body) {
     reference = body.table().particle_position;
@@ -40,6 +45,7 @@ struct BodyFields {
     }
   }
 
+  /// For checkpoints: positions, velocities and forces; the rest comes from the body.
   template <class Archive>
   void state(Archive& archive) {
     archive("position", position);
@@ -47,6 +53,7 @@ struct BodyFields {
     archive("force", force);
   }
 
+  /// As contacts and terms take it; valid as long as this object.
   [[nodiscard]] ParticleFields view() { return {reference, position, velocity, mass, volume, force}; }
 };
 

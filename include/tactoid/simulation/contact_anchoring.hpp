@@ -14,10 +14,11 @@ struct ContactAnchoring {
   double capture_distance = 100e-9;  ///< m, > 0
   int interval = 10;                 ///< steps between two looks at the gaps
   PerDimension<SurfaceGaps> gaps{};  ///< set by initialize(), as the rest
-  FirstTouch touch{};
-  int countdown = 0;
-  bool fresh = false;
+  FirstTouch touch{};                ///< which particles have touched
+  int countdown = 0;                 ///< steps until the next look
+  bool fresh = false;                ///< gaps were measured in this step
 
+  /// Throws ParameterError unless capture_distance > 0 and interval >= 1, GeometryError for a cloud without facets.
   template <int D>
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b, const ParticleFields& b) {
     require_positive("ContactAnchoring.capture_distance", capture_distance, "m");
@@ -26,6 +27,7 @@ struct ContactAnchoring {
     touch.capture_distance = capture_distance;
   }
 
+  /// Measures the gaps in every `interval`-th step; no force, no energy.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) {
     if (countdown-- == 0) {
       countdown = interval - 1;
@@ -34,6 +36,7 @@ struct ContactAnchoring {
     }
     return {};
   }
+  /// No force, no limit.
   [[nodiscard]] double stiffness_rate(const ParticleFields&, const ParticleFields&) const { return 0.0; }
 
   /// Holds the director of the particles that touch for the first time.
@@ -45,6 +48,7 @@ struct ContactAnchoring {
     if (body.anchored.empty()) body.anchored.assign(body.size(), 0);
     for (Index i : touch.update(gaps.visit([](const auto& g) { return g.gaps(); }))) body.anchored[i] = 1;
   }
+  /// For checkpoints: the gaps that are followed, and who has touched.
   template <class Archive>
   void state(Archive& archive) {
     archive.part("gaps", gaps);

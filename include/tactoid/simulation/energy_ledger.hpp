@@ -7,7 +7,7 @@ namespace tactoid {
 
 /// The energies of a simulation at one instant and the works since its start, J.
 struct EnergyLedger {
-  double kinetic = 0.0;
+  double kinetic = 0.0;        ///< ½ Σ m |v|² at the present instant
   double strain = 0.0;         ///< of the laws
   double stabilization = 0.0;  ///< of the quadrature's stabilisation
   double adhesion = 0.0;       ///< potentials of the contacts
@@ -18,12 +18,14 @@ struct EnergyLedger {
   double initial = 0.0;       ///< total() at the start
   double largest_work = 0.0;  ///< largest |work| or energy exchanged so far: the scale of the error
 
+  /// What is stored now.
   [[nodiscard]] double total() const { return kinetic + strain + stabilization + adhesion + surface; }
   /// total + dissipated − external work − initial total: zero for exact integration in time.
   [[nodiscard]] double defect() const { return total() + dissipated - external_work - initial; }
   /// |defect| over the largest work done so far.
   [[nodiscard]] double error() const { return largest_work > 0.0 ? std::abs(defect()) / largest_work : 0.0; }
 
+  /// For checkpoints: all of it.
   template <class Archive>
   void state(Archive& archive) {
     archive("kinetic", kinetic);
@@ -37,6 +39,7 @@ struct EnergyLedger {
     archive("largest_work", largest_work);
   }
 
+  /// Lets largest_work grow with what has been exchanged until now.
   void note_scale() {
     for (const double e : {kinetic, strain, dissipated, external_work, total() - initial})
       largest_work = std::max(largest_work, std::abs(e));

@@ -35,15 +35,18 @@ concept Observer =
 template <class F>
 class Every {
  public:
+  /// `interval` in s of simulated time, > 0: throws ParameterError.
   Every(double interval, F function) : interval_(interval), function_(std::move(function)) {
     require_positive("every: interval", interval, "s");
   }
+  /// First call; the interval counts from here.
   template <class S>
   void begin(S& simulation) {
     start_ = simulation.time();
     count_ = 0;
     call(simulation);
   }
+  /// Goes on in the intervals of the run that was saved.
   template <class S>
   void resume(const S& simulation) {
     // An event that differs from the present by round-off has been.
@@ -54,18 +57,22 @@ class Every {
     const double last = start_ + interval_ * static_cast<double>(count_);
     called_ = std::abs(now - last) <= close ? now : last;
   }
+  /// Of the next call, s.
   template <class S>
   [[nodiscard]] double next_time(const S&) const { return start_ + interval_ * static_cast<double>(count_ + 1); }
+  /// Calls the function if its time has come.
   template <class S>
   void after_step(S& simulation) {
     if (simulation.time() < next_time(simulation)) return;
     ++count_;
     call(simulation);
   }
+  /// A last call, unless there was one at this time.
   template <class S>
   void end(S& simulation) {  // unless it was called at this time already
     if (simulation.time() > called_) call(simulation);
   }
+  /// A last call with the state before the failure.
   template <class S>
   void last_good_state(S& simulation) { end(simulation); }
 
@@ -81,6 +88,8 @@ class Every {
   long count_ = 0;
 };
 
+/// An observer from a function of the simulation: `every(0.1_us, [](auto& s) { … })`. Throws ParameterError unless
+/// `interval` > 0, s.
 template <class F>
 [[nodiscard]] Every<F> every(double interval, F function) {
   return {interval, std::move(function)};
@@ -91,23 +100,30 @@ template <class F>
 template <class F>
 class EverySteps {
  public:
+  /// `steps` >= 1: throws ParameterError.
   EverySteps(long steps, F function) : steps_(steps), function_(std::move(function)) {
     if (steps < 1) reject("every_steps: steps", static_cast<double>(steps), "", "at least 1");
   }
+  /// First call; steps count from here.
   template <class S>
   void begin(S& simulation) { function_(simulation); }
+  /// Goes on counting where the run that was saved had come to.
   template <class S>
   void resume(const S& simulation) { count_ = static_cast<long>(simulation.steps() - simulation.run_start_steps()); }
+  /// S: no instant is asked for.
   template <class S>
   [[nodiscard]] double next_time(const S&) const { return std::numeric_limits<double>::infinity(); }
+  /// Calls the function if this is one of its steps.
   template <class S>
   void after_step(S& simulation) {
     if (++count_ % steps_ == 0) function_(simulation);
   }
+  /// A last call, unless the last step had one.
   template <class S>
   void end(S& simulation) {
     if (count_ % steps_ != 0) function_(simulation);
   }
+  /// A last call with the state before the failure.
   template <class S>
   void last_good_state(S& simulation) { function_(simulation); }
 
@@ -116,6 +132,8 @@ class EverySteps {
   F function_;
 };
 
+/// An observer from a function of the simulation: `every_steps(10, [](auto& s) { … })`. Throws ParameterError unless
+/// `steps` >= 1.
 template <class F>
 [[nodiscard]] EverySteps<F> every_steps(long steps, F function) {
   return {steps, std::move(function)};

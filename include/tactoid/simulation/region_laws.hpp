@@ -20,25 +20,27 @@ using LoopLanes = Lanes<8>;
 /// point to point, so it is stored per point and evaluated one point at a time.
 template <class M>
 struct RegionLaw {
-  static constexpr bool graded = is_graded<M>;
-  using Law = LawOf<M>;
-  using Scalar = std::conditional_t<graded, double, LoopLanes>;
-  static constexpr int width = lane_count<Scalar>;
+  static constexpr bool graded = is_graded<M>;                   ///< the law depends on the position
+  using Law = LawOf<M>;                                          ///< of one point
+  using Scalar = std::conditional_t<graded, double, LoopLanes>;  ///< on which the law is evaluated
+  static constexpr int width = lane_count<Scalar>;               ///< points per evaluation
 
   std::vector<Law> laws;  ///< one, or one per point when graded
   std::vector<HistoryOf<Law, Scalar>> histories;  ///< of the accepted state
   std::vector<HistoryOf<Law, Scalar>> advanced;   ///< by the step that is being computed
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  Stabilization stabilization;
+  std::size_t begin = 0;                          ///< first point of the region in the table
+  std::size_t end = 0;                            ///< one past its last point
+  Stabilization stabilization;                    ///< of the region; of its softest law, where graded
 
   /// Wave speed squared and kinematic longitudinal viscosity, the largest over the region, m²/s² and m²/s.
   double wave_speed_squared = 0.0;
-  double kinematic_viscosity = 0.0;
+  double kinematic_viscosity = 0.0;  ///< see above, m²/s
 
-  [[nodiscard]] const Law& law(std::size_t q) const { return laws[graded ? q - begin : 0]; }
+  [[nodiscard]] const Law& law(std::size_t q) const { return laws[graded ? q - begin : 0]; }  ///< at point q of the table
+  /// Number of the block that holds point q.
   [[nodiscard]] std::size_t block(std::size_t q) const { return (q - begin) / static_cast<std::size_t>(width); }
 
+  /// For checkpoints: the histories, as numbers point by point.
   template <class Archive>
   void state(Archive& archive) {
     constexpr std::size_t scalars = history_size<Law>;

@@ -16,21 +16,24 @@ namespace tactoid::rows {
 
 /// What a particle does, side by side: one line of the cache.
 struct alignas(64) Motion {
-  double displacement[4];
-  double velocity[4];
+  double displacement[4];  ///< u_I, m
+  double velocity[4];      ///< v_I, m/s
 };
 
 /// What the force loop knows of a particle's motion: u and v, or u alone where no rate is needed.
 template <bool Rate>
 using MotionOf = std::conditional_t<Rate, Motion, Vector4>;
+/// u of either.
 [[nodiscard]] inline const double* displacement(const Motion& motion) { return motion.displacement; }
+/// u of either.
 [[nodiscard]] inline const double* displacement(const Vector4& u) { return u.data(); }
 
 /// Columns of a referential gradient: column[K] = ∂f/∂X_K.
 struct Gradient {
-  Quad column[3] = {};
+  Quad column[3] = {};  ///< 1/m times the unit of f
 };
 
+/// sum ← sum + f ⊗ gradient.
 [[gnu::always_inline]] inline void add_outer(Gradient& sum, const Quad& f, const double (&gradient)[3]) {
   sum.column[0] += gradient[0] * f;
   sum.column[1] += gradient[1] * f;
@@ -97,6 +100,7 @@ inline void to_lanes(const Gradient (&points)[W], Tensor<Lanes<W>>& A) {
       quad(A(2, K).lane.data() + l) = z;
     }
 }
+/// The same for a law that is evaluated at one point at a time.
 inline void to_lanes(const Gradient (&points)[1], Tensor<double>& A) {
   for (int K = 0; K < 3; ++K)
     for (int i = 0; i < 3; ++i) A(i, K) = points[0].column[K][i];
@@ -117,14 +121,16 @@ inline void to_points(const Tensor<Lanes<W>>& A, const double (&volume)[W], Grad
       points[l + 3].column[K] = w;
     }
 }
+/// The same for a law that is evaluated at one point at a time.
 inline void to_points(const Tensor<double>& A, const double (&volume)[1], Gradient (&points)[1]) {
   for (int K = 0; K < 3; ++K) points[0].column[K] = volume[0] * Quad{A(0, K), A(1, K), A(2, K), 0.0};
 }
 
-/// f ← f − Σ_K flux_K G_K − held: what the stress columns V_q P_·K and a force of its own do to the particle of a pair.
+/// f ← f − Σ_K flux_K G_K: what the stress columns V_q P_·K do to the particle of a pair.
 [[gnu::always_inline]] inline void subtract(double* f, const TableEntry& entry, const Gradient& flux) {
   quad(f) -= entry.gradient[0] * flux.column[0] + entry.gradient[1] * flux.column[1] + entry.gradient[2] * flux.column[2];
 }
+/// The same, and − held, a force that this pair has of its own.
 [[gnu::always_inline]] inline void subtract(double* f, const TableEntry& entry, const Gradient& flux, const Quad& held) {
   quad(f) -= entry.gradient[0] * flux.column[0] + entry.gradient[1] * flux.column[1] + entry.gradient[2] * flux.column[2] + held;
 }
@@ -157,13 +163,13 @@ inline void prefetch(std::span<const TableEntry> row) {
 
 /// Energy and dissipated power of the stabilisation of one point.
 struct StabilizationPower {
-  double energy = 0.0;
-  double dissipated = 0.0;
+  double energy = 0.0;      ///< ½ κ Σ_J w_J |r_J|², J
+  double dissipated = 0.0;  ///< κ τ Σ_J w_J |ṙ_J|², W
 };
 
 /// A point whose pairs are stabilised.
 struct StabilizedPoint {
-  std::span<const TableEntry> row;
+  std::span<const TableEntry> row;  ///< its pairs
   std::span<const float> weights;  ///< w_J, of the first entries of the row
   Index owner;                     ///< I
   double kappa;                    ///< κ, N/m

@@ -43,13 +43,16 @@ namespace tactoid {
 template <class BodiesType, class ContactsType, class BoundariesType, class IntegratorType>
 class Simulation;
 
+/// The implementation of Simulation: all types are known, so nothing is called through a pointer.
 template <class... B, class... C, class... T, class I>
 class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
  public:
-  static constexpr std::size_t body_count = sizeof...(B);
-  static constexpr int dimension = std::tuple_element_t<0, std::tuple<B...>>::dimension;
+  static constexpr std::size_t body_count = sizeof...(B);                                 ///< number of bodies
+  static constexpr int dimension = std::tuple_element_t<0, std::tuple<B...>>::dimension;  ///< 1, 2 or 3: that of all bodies
   static_assert(((B::dimension == dimension) && ...), "All bodies of a Simulation have the same dimension.");
 
+  /// Composes, checks and evaluates the first state; takes bodies, contacts, terms and integrator over. Throws
+  /// ParameterError, GeometryError, and ComputationError where the first state has an inverted point.
   Simulation(Bodies<B...> bodies, Contacts<C...> contacts, Boundaries<T...> boundaries, I integrator)
       : bodies_(std::move(bodies.list)), contacts_(std::move(contacts.list)), boundaries_(std::move(boundaries.list)),
         integrator_(std::move(integrator)) {
@@ -89,19 +92,23 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   Simulation& operator=(const Simulation&) = delete;
 
   // --- parts -------------------------------------------------------------------------------------------------
+  /// Body N, in the order of Bodies{…}.
   template <std::size_t N>
   [[nodiscard]] auto& body() { return std::get<N>(bodies_); }
+  /// Body N, in the order of Bodies{…}.
   template <std::size_t N>
   [[nodiscard]] const auto& body() const { return std::get<N>(bodies_); }
+  /// The contact number N of Contacts{…}, to read what it holds.
   template <std::size_t N>
   [[nodiscard]] auto& contact() { return std::get<N>(contacts_).contact; }
+  /// The term number N of Boundaries{…}, or its prescribed motion.
   template <std::size_t N>
   [[nodiscard]] auto& boundary() { return std::get<N>(boundaries_).term; }
-  [[nodiscard]] const I& integrator() const { return integrator_; }
-  [[nodiscard]] double time() const { return time_; }
-  [[nodiscard]] double last_time_step() const { return last_step_; }
-  [[nodiscard]] std::size_t steps() const { return steps_; }
-  [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
+  [[nodiscard]] const I& integrator() const { return integrator_; }     ///< with what it keeps from step to step
+  [[nodiscard]] double time() const { return time_; }                   ///< present instant, s
+  [[nodiscard]] double last_time_step() const { return last_step_; }    ///< length of the step that led here, s; 0 at the start
+  [[nodiscard]] std::size_t steps() const { return steps_; }            ///< taken since the start
+  [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }  ///< energies now and works since the start, J
   /// Values at the particles of a body: positions, velocities, forces of contacts and boundary terms.
   template <std::size_t N>
   [[nodiscard]] ParticleFields particles() { return fields_[N].view(); }
@@ -109,10 +116,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   template <std::size_t N>
   [[nodiscard]] const EssentialConditions& essential() const { return essential_[N]; }
 
+  /// Calls f(body, number) for every body, in order.
   template <class F>
   void for_each_body(const F& f) {
     [&]<std::size_t... N>(std::index_sequence<N...>) { (f(std::get<N>(bodies_), N), ...); }(std::index_sequence_for<B...>{});
   }
+  /// Calls f(body, number) for every body, in order.
   template <class F>
   void for_each_body(const F& f) const {
     [&]<std::size_t... N>(std::index_sequence<N...>) { (f(std::get<N>(bodies_), N), ...); }(std::index_sequence_for<B...>{});
@@ -173,7 +182,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
 
   /// When the run began, s and steps; a simulation whose state was restored goes on with the run that was saved.
   [[nodiscard]] double run_start() const { return run_start_; }
-  [[nodiscard]] std::size_t run_start_steps() const { return run_start_steps_; }
+  [[nodiscard]] std::size_t run_start_steps() const { return run_start_steps_; }  ///< steps taken when the run began
 
   /// Everything that the next step needs: for save_state and restore_state, in a simulation that is composed in the same
   /// way. Then it goes on with the same bits, and the next run calls its observers when the saved run would have.
@@ -205,6 +214,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
 
   // --- what an integrator uses -------------------------------------------------------------------------------
+  /// Largest stable step of all bodies at the present state, s, without a safety factor; see StableStep.
   [[nodiscard]] double largest_stable_time_step() const {
     double step = std::numeric_limits<double>::infinity();
     for_each_body([&](const auto& body, std::size_t b) {
@@ -213,6 +223,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     return step;
   }
 
+  /// v ← v + Δt M⁻¹ f of all unknowns, with the forces of the last evaluate(); Δt in s.
   void kick(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
       previous_velocity_[b].resize(body.size());
@@ -223,6 +234,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
   }
 
+  /// u ← u + Δt v of all unknowns, then the essential conditions at the new time; the time moves on by Δt, s. What
+  /// was there before is kept, in case that evaluate() breaks down.
   void drift(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
       previous_[b].resize(body.size());
@@ -392,6 +405,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   bool resumed_ = false;  // the state was restored: the next run goes on with the one that was saved
 };
 
+/// Deduced from what is composed.
 template <class... B, class... C, class... T, class I>
 Simulation(Bodies<B...>, Contacts<C...>, Boundaries<T...>, I) -> Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I>;
 

@@ -21,6 +21,8 @@ namespace tactoid {
 /// stable for ω² Δt² + 2 d Δt <= 4.
 class StableStep {
  public:
+  /// Measures a body at its first state. Its displacement and velocity are as before afterwards; costs some hundred
+  /// evaluations of the forces at most.
   template <class Body>
   void calibrate(Body& body) {
     const Field present = body.displacement;

@@ -29,7 +29,7 @@ namespace tactoid {
 template <class Body, class... Terms>
 class StaticProblem {
  public:
-  static constexpr int dimension = Body::dimension;
+  static constexpr int dimension = Body::dimension;  ///< of the body
 
   /// Throws ParameterError for a condition that EssentialConditions rejects.
   StaticProblem(Body& body, std::vector<PrescribedMotion> motions, Terms... terms)
@@ -55,14 +55,17 @@ class StaticProblem {
   [[nodiscard]] const Vector3& reaction(std::size_t m) const { return reactions_[m]; }
   /// Energies of the body and of the terms at the last evaluation, J.
   [[nodiscard]] const BodyTotals& energies() const { return totals_; }
+  /// Of the terms at the last evaluation, J.
   [[nodiscard]] const TermEnergy& term_energy() const { return term_energy_; }
 
   // --- what StaticNewton uses --------------------------------------------------------------------------------
+  /// Fraction of the loads and of the prescribed displacements, 0 (present state) to 1.
   void set_load(double fraction) {
     fraction_ = fraction;
     defect_target_ = initial_ + fraction * (final_ - initial_);
   }
 
+  /// Forces at the present displacement; false where a point is inverted or a force is not finite.
   bool evaluate() {
     fields_.refresh(body_, 0.0);
     term_energy_ = {};
@@ -79,22 +82,28 @@ class StaticProblem {
     return sound && forces_.allFinite();
   }
 
+  /// Internal + fraction × external, N; D N of them.
   [[nodiscard]] const Eigen::VectorXd& forces() const { return forces_; }
-  [[nodiscard]] double force_scale() const { return force_scale_; }
-  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] double force_scale() const { return force_scale_; }  ///< larger norm of the two parts, N
+  [[nodiscard]] double length() const { return length_; }            ///< diagonal of the box around the body, m
+  /// K of the body, and of the terms that have one, N/m.
   [[nodiscard]] StiffnessMatrix stiffness() {
     StiffnessMatrix K = assemble_stiffness(body_);
     if constexpr ((TermWithStiffness<Terms> || ...)) K += term_stiffness();
     return K;
   }
+  /// N: a row per prescribed component of a particle.
   [[nodiscard]] const StiffnessMatrix& conditions() const { return conditions_; }
+  /// Unknowns are values at the particles.
   [[nodiscard]] bool conditions_are_values() const { return body_.particle_values().identity(); }
-  [[nodiscard]] Eigen::VectorXd defect() const { return defect_target_ - conditions_ * unknowns(); }
+  [[nodiscard]] Eigen::VectorXd defect() const { return defect_target_ - conditions_ * unknowns(); }  ///< ū − N u, m
+  /// u ← u + du, m.
   void move(const Eigen::VectorXd& du) {
     for (std::size_t i = 0; i < body_.size(); ++i)
       body_.displacement[i].template head<dimension>() +=
           du.segment<dimension>(static_cast<Eigen::Index>(dimension * i));
   }
+  /// Sums the forces of the conditions (N, in the order of the rows) per prescribed motion, for reaction().
   void set_multipliers(const Eigen::VectorXd& multipliers) {
     std::fill(reactions_.begin(), reactions_.end(), Vector3::Zero());
     Eigen::Index row = 0;

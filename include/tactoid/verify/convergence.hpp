@@ -15,8 +15,9 @@ struct ConvergenceRates {
   std::vector<double> successive;  ///< log(e_i / e_{i+1}) / log(h_i / h_{i+1}) from one resolution to the next
   double fitted = 0.0;             ///< slope of the least-squares line through all points (log h, log e)
 
+  /// Of the successive orders.
   [[nodiscard]] double lowest() const { return *std::min_element(successive.begin(), successive.end()); }
-  [[nodiscard]] double last() const { return successive.back(); }
+  [[nodiscard]] double last() const { return successive.back(); }  ///< order between the two finest
 };
 
 /// Orders at which errors fall with the size h of a discretisation: spacings, or time steps.

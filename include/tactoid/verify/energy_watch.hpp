@@ -21,10 +21,12 @@ struct EnergyWatch {
   double time = 0.0;            ///< of the largest defect, s
   EnergyLedger last = {};       ///< the ledger after the last step
 
+  /// Looks at the ledger of the first state.
   template <class S>
   void begin(S& simulation) {
     after_step(simulation);
   }
+  /// Looks at the ledger.
   template <class S>
   void after_step(S& simulation) {
     last = simulation.ledger();
@@ -36,9 +38,10 @@ struct EnergyWatch {
     largest_error = std::max(largest_error, std::isfinite(defect) ? last.error() : defect);
   }
   template <class S>
-  void end(S&) {}
+  void end(S&) {}  ///< nothing is left to do
   template <class S>
-  void last_good_state(S&) {}
+  void last_good_state(S&) {}  ///< what was recorded stays
+  /// s: no instant is asked for.
   template <class S>
   [[nodiscard]] double next_time(const S&) const {
     return std::numeric_limits<double>::infinity();

@@ -15,7 +15,7 @@ namespace tactoid {
 struct PatchReport {
   double displacement_error = 0.0;  ///< largest error at a particle inside, over the largest |u| of the affine motion
   double stress_error = 0.0;        ///< largest ‖σ − σ̄‖ (Cauchy) at a point, over the largest ‖σ̄‖ of the affine motion
-  StaticReport solution;
+  StaticReport solution;            ///< what the equilibrium took
 };
 
 /// Linear patch test of a body: the particles on the facets are moved by u = (F − 1) X, the others find their static
