@@ -1,13 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/read_file.hpp>
 #include <tactoid/core/text.hpp>
 #include <tactoid/input/mesh.hpp>
 
@@ -26,12 +25,7 @@ namespace detail {
 /// Numbers of an MSH file, text or binary, with the place in the messages.
 class MshScanner {
  public:
-  explicit MshScanner(const std::filesystem::path& path) : path_(path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) throw FileError(fmt::format("Cannot read {}.", in_quotes(path.string())));
-    content_.assign(std::istreambuf_iterator<char>(file), {});
-    if (file.bad()) throw FileError(fmt::format("Cannot read {}.", in_quotes(path.string())));
-  }
+  explicit MshScanner(const std::filesystem::path& path) : path_(path), content_(read_file(path)) {}
 
   [[noreturn]] void refuse(std::string_view what) const {
     throw FileError(fmt::format("{}, {}: {}", in_quotes(path_.string()), place(), what));
