@@ -261,10 +261,7 @@ class MshReader {
       const auto named = names_.find(group->second);
       name = named != names_.end() ? named->second : fmt::format("group {}", group->second);
     }
-    for (std::size_t r = 0; r < regions_.size(); ++r)
-      if (regions_[r] == name) return r;
-    regions_.push_back(std::move(name));
-    return regions_.size() - 1;
+    return region_number(regions_, name);
   }
 
   MshScanner scan_;
