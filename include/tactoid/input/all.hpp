@@ -2,3 +2,4 @@
 
 #include <tactoid/input/gmsh.hpp>
 #include <tactoid/input/mesh.hpp>
+#include <tactoid/input/points.hpp>
