@@ -1,5 +1,5 @@
-// Points without cells become bodies: Delaunay's triangulation, the alpha shape, volumes, surfaces, regions. Tables of points
-// and VTU files in every encoding; what is no body, no table or no VTU file is refused with place and cause.
+// Points without cells become bodies: Delaunay's triangulation, the alpha shape, volumes, surfaces, regions. Tables of
+// points and VTU files in every encoding; what is no body, no table or no VTU file is refused with place and cause.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -86,7 +86,8 @@ std::string refused_vtu(const std::string& text, const VtuOptions& options = {})
   return test::refusal([&] { return read_vtu<D>(folder.write(text, "cell.vtu"), options); });
 }
 
-std::string table(const std::vector<Point<3>>& points, const std::string& more = "", const std::string& separator = ",") {
+std::string table(const std::vector<Point<3>>& points, const std::string& more = "",
+                  const std::string& separator = ",") {
   std::string text = "x" + separator + "y" + separator + "z" + (more.empty() ? "" : separator + more) + "\n";
   for (const Point<3>& X : points) text += fmt::format("{}{}{}{}{}\n", X[0], separator, X[1], separator, X[2]);
   return text;
@@ -96,8 +97,8 @@ std::string table(const std::vector<Point<3>>& points, const std::string& more =
 struct VtuFile {
   enum Encoding { ascii, binary, raw, base64 } encoding = ascii;
   bool wide_header = false, big_endian = false;
-  bool padded_header = false;    // header and data in base64 for themselves
-  std::uint32_t block = 0;       // "compressed" in blocks of that many bytes; here without making them smaller
+  bool padded_header = false;  // header and data in base64 for themselves
+  std::uint32_t block = 0;     // "compressed" in blocks of that many bytes; here without making them smaller
   std::string appended{};
 
   template <class T>
@@ -116,7 +117,8 @@ struct VtuFile {
     for (std::size_t k = 0; k < bytes.size(); k += 3) {
       std::uint32_t bits = 0;
       const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
-      for (std::size_t b = 0; b < 3; ++b) bits = bits << 8 | (b < count ? static_cast<unsigned char>(bytes[k + b]) : 0u);
+      for (std::size_t b = 0; b < 3; ++b)
+        bits = bits << 8 | (b < count ? static_cast<unsigned char>(bytes[k + b]) : 0u);
       for (std::size_t d = 0; d < 4; ++d) text += d <= count ? digits[bits >> (18 - 6 * d) & 63] : '=';
     }
     return text;
@@ -129,7 +131,10 @@ struct VtuFile {
 
   template <class T>
   std::string array(const std::string& type, const std::string& attributes, const std::vector<T>& values) {
-    std::string text = fmt::format("<DataArray type=\"{}\" {} format=\"{}\"", type, attributes, encoding == ascii ? "ascii" : encoding == binary ? "binary" : "appended");
+    std::string text = fmt::format("<DataArray type=\"{}\" {} format=\"{}\"", type, attributes,
+                                   encoding == ascii    ? "ascii"
+                                   : encoding == binary ? "binary"
+                                                        : "appended");
     if (encoding == ascii) {
       text += ">\n";
       for (const T value : values) text += fmt::format("{} ", +value);
@@ -143,7 +148,9 @@ struct VtuFile {
       for (std::size_t b = 0; b < blocks; ++b) numbers.push_back(b + 1 == blocks && last > 0 ? last : block);
     }
     const std::string head = header(numbers);
-    const std::string coded = encoding == raw ? head + bytes : padded_header ? in_base64(head) + in_base64(bytes) : in_base64(head + bytes);
+    const std::string coded = encoding == raw ? head + bytes
+                              : padded_header ? in_base64(head) + in_base64(bytes)
+                                              : in_base64(head + bytes);
     if (encoding == binary) return text + ">\n  " + coded + "\n</DataArray>\n";
     text += fmt::format(" offset=\"{}\"/>\n", appended.size());
     appended += coded;
@@ -167,9 +174,13 @@ struct VtuFile {
     offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
     types.push_back(1);
     regions.push_back(99);
-    std::string text = fmt::format("<?xml version=\"1.0\"?>\n<!-- made by hand -->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" header_type=\"{}\"{}>\n",
-                                   big_endian ? "BigEndian" : "LittleEndian", wide_header ? "UInt64" : "UInt32", block > 0 ? " compressor='vtkZLibDataCompressor'" : "");
-    text += fmt::format("<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n", cloud.size(), types.size());
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\"?>\n<!-- made by hand -->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+        "byte_order=\"{}\" header_type=\"{}\"{}>\n",
+        big_endian ? "BigEndian" : "LittleEndian", wide_header ? "UInt64" : "UInt32",
+        block > 0 ? " compressor='vtkZLibDataCompressor'" : "");
+    text += fmt::format("<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
+                        cloud.size(), types.size());
     text += array("Float64", "Name=\"Points\" NumberOfComponents=\"3\"", points);
     text += "</Points>\n<Cells>\n";
     text += array("Int64", "Name=\"connectivity\"", connectivity);
@@ -179,13 +190,16 @@ struct VtuFile {
     text += array("Int32", "Name=\"region\"", regions);
     text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n";
     if (encoding == raw || encoding == base64)
-      text += fmt::format("<AppendedData encoding=\"{}\">\n   _", encoding == raw ? "raw" : "base64") + appended + "\n</AppendedData>\n";
+      text += fmt::format("<AppendedData encoding=\"{}\">\n   _", encoding == raw ? "raw" : "base64") + appended +
+              "\n</AppendedData>\n";
     return text + "</VTKFile>\n";
   }
 };
 
 /// Stands for zlib's: the blocks of VtuFile are as they were.
-std::string no_compression(std::string_view bytes, std::size_t size) { return bytes.size() == size ? std::string(bytes) : ""; }
+std::string no_compression(std::string_view bytes, std::size_t size) {
+  return bytes.size() == size ? std::string(bytes) : "";
+}
 
 }  // namespace
 
@@ -208,7 +222,8 @@ TEST_CASE("Delaunay's triangulation: no point in any ball, no gap, no flat simpl
   }
   CHECK(volume == test::relative(1.0).epsilon(1e-12));
 
-  // All eight points of a cube lie on a sphere: six tetrahedra per cube, or two triangles per square, of the same volume.
+  // All eight points of a cube lie on a sphere: six tetrahedra per cube, or two triangles per square, of the same
+  // volume.
   for (const auto& s : detail::Delaunay<3>(lattice<3>(3)).simplices()) {
     const std::vector<Point<3>> X = lattice<3>(3);
     Eigen::Matrix3d e;
@@ -217,7 +232,8 @@ TEST_CASE("Delaunay's triangulation: no point in any ball, no gap, no flat simpl
   }
   CHECK(detail::Delaunay<3>(lattice<3>(3)).simplices().size() == 6 * 27);
   CHECK(detail::Delaunay<2>(lattice<2>(9)).simplices().size() == 2 * 81);
-  CHECK_THROWS_WITH_AS((void)detail::Delaunay<2>({{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1e-9}}), doctest::Contains("points 1 and 3 coincide"), GeometryError);
+  CHECK_THROWS_WITH_AS((void)detail::Delaunay<2>({{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1e-9}}),
+                       doctest::Contains("points 1 and 3 coincide"), GeometryError);
 }
 
 TEST_CASE("Points of a box: exact volume and surface, in any position, regular or not") {
@@ -241,7 +257,8 @@ TEST_CASE("Points of a box: exact volume and surface, in any position, regular o
   // Round-off of a turned and shaken plane leaves nothing flat on the surface.
   std::vector<Point<3>> shaken = lattice<3>(5);
   Random random(9);
-  for (Point<3>& X : shaken) X = turn * X + 1e-7 * Point<3>(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+  for (Point<3>& X : shaken)
+    X = turn * X + 1e-7 * Point<3>(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
   const PointCloud<3> cloud = cloud_of_points<3>({.positions = shaken});
   CHECK(volume_of(cloud) == test::relative(1.0).epsilon(1e-6));
   CHECK(boundary_area(cloud) == test::relative(6.0).epsilon(1e-5));
@@ -251,7 +268,8 @@ TEST_CASE("Points of a box: exact volume and surface, in any position, regular o
 TEST_CASE("Points of a ball: the volume that is missing falls with the square of the spacing") {
   std::vector<double> missing;
   for (const int n : {4, 6}) {
-    const PointCloud<3> cloud = cloud_of_points<3>({.positions = ball({.radius = 1.0, .core_radius = 0.5, .core_cells = n, .shells = n / 2}).positions});
+    const PointCloud<3> cloud = cloud_of_points<3>(
+        {.positions = ball({.radius = 1.0, .core_radius = 0.5, .core_cells = n, .shells = n / 2}).positions});
     has_closed_surface(cloud);
     missing.push_back(1.0 - volume_of(cloud) / (4.0 / 3.0 * std::numbers::pi));
     CHECK(boundary_area(cloud) == test::relative(4.0 * std::numbers::pi).epsilon(0.04));
@@ -261,7 +279,8 @@ TEST_CASE("Points of a ball: the volume that is missing falls with the square of
   CHECK(missing[0] / missing[1] == test::relative(2.25).epsilon(0.15));
 }
 
-TEST_CASE("Hollows and re-entrant edges: what is wider than alpha spacings stays open, edges are rounded by half a cell") {
+TEST_CASE(
+    "Hollows and re-entrant edges: what is wider than alpha spacings stays open, edges are rounded by half a cell") {
   constexpr int n = 6;
   std::vector<Point<3>> corner, hollow;
   for (const Point<3>& X : lattice<3>(n))
@@ -296,7 +315,8 @@ TEST_CASE("Points at random: a surface that touched itself is mended") {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     Random random(seed);
     std::vector<Point<3>> points;
-    for (int i = 0; i < 200; ++i) points.push_back({random.uniform(0.0, 1.0), random.uniform(0.0, 1.0), random.uniform(0.0, 1.0)});
+    for (int i = 0; i < 200; ++i)
+      points.push_back({random.uniform(0.0, 1.0), random.uniform(0.0, 1.0), random.uniform(0.0, 1.0)});
     const PointCloud<3> cloud = cloud_of_points<3>({.positions = points});
     has_closed_surface(cloud);
     CHECK(volume_of(cloud) > 0.5);
@@ -330,19 +350,29 @@ TEST_CASE("Points that are no body are refused") {
     return refused_points(points, options);
   };
   CHECK(bent([](auto&) {}) == "accepted");
-  CHECK(says(bent([](auto& p) { p.positions.resize(1); }), "there is 1 point: a body of 3 dimensions needs 4 at least"));
+  CHECK(
+      says(bent([](auto& p) { p.positions.resize(1); }), "there is 1 point: a body of 3 dimensions needs 4 at least"));
   CHECK(says(bent([](auto& p) { p.positions.clear(); }), "there are 0 points"));
   CHECK(says(bent([](auto& p) { p.positions.resize(16); }), "all points lie in a plane"));
-  CHECK(says(refused_points<2>({.positions = {{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}, {3.0, 3.0}}}), "all points lie on a line"));
-  CHECK(says(bent([](auto& p) { p.positions[7][1] = std::numeric_limits<double>::infinity(); }), "point 7 has a position that is not finite"));
-  CHECK(says(bent([](auto& p) { p.positions.push_back(p.positions[3] + Point<3>::Constant(1e-8)); }), "point 3 and point 64 coincide at (1, 0, 0) m"));
-  CHECK(says(bent([](auto& p) { p.positions.push_back({9.0, 0.0, 0.0}); }), "point 64 at (9, 0, 0) m is too far from the others to belong to the body: raise alpha = 1.4"));
+  CHECK(says(refused_points<2>({.positions = {{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}, {3.0, 3.0}}}),
+             "all points lie on a line"));
+  CHECK(says(bent([](auto& p) { p.positions[7][1] = std::numeric_limits<double>::infinity(); }),
+             "point 7 has a position that is not finite"));
+  CHECK(says(bent([](auto& p) { p.positions.push_back(p.positions[3] + Point<3>::Constant(1e-8)); }),
+             "point 3 and point 64 coincide at (1, 0, 0) m"));
+  CHECK(says(bent([](auto& p) {
+               p.positions.push_back({9.0, 0.0, 0.0});
+             }),
+             "point 64 at (9, 0, 0) m is too far from the others to belong to the body: raise alpha = 1.4"));
   CHECK(says(bent([](auto& p) { p.volumes = {1.0}; }), "there are 64 points, but 1 volumes"));
   CHECK(says(bent([](auto& p) { p.point_regions = {0}; }), "there are 64 points, but 1 regions of points"));
-  CHECK(says(bent([](auto& p) { p.point_regions.assign(64, 3); }), "point 0 is in region 3, but there are only 1 regions"));
-  CHECK(says(bent([](auto& p) { p.volumes.assign(64, 1.0 / 64.0), p.volumes[5] = -1.0; }), "point 5 has the volume -1: it must be positive"));
+  CHECK(says(bent([](auto& p) { p.point_regions.assign(64, 3); }),
+             "point 0 is in region 3, but there are only 1 regions"));
+  CHECK(says(bent([](auto& p) { p.volumes.assign(64, 1.0 / 64.0), p.volumes[5] = -1.0; }),
+             "point 5 has the volume -1: it must be positive"));
   CHECK(bent([](auto& p) { p.volumes.assign(64, 1.0 / 64.0); }) == "accepted");
-  CHECK(says(bent([](auto& p) { p.volumes.assign(64, 1.3 / 64.0); }), "the volumes of the points sum to 1.3 m^3, the body between them has 1: points must lie on its surface"));
+  CHECK(says(bent([](auto& p) { p.volumes.assign(64, 1.3 / 64.0); }),
+             "the volumes of the points sum to 1.3 m^3, the body between them has 1: points must lie on its surface"));
   CHECK(says(bent([](auto&) {}, {.alpha = 0.5}), "the points enclose no volume"));
   CHECK(says(bent([](auto&) {}, {.alpha = -1.0}), "PointsOptions.alpha = -1 is not allowed"));
   CHECK(says(bent([](auto&) {}, {.scale = 0.0}), "PointsOptions.scale = 0 m is not allowed"));
@@ -360,7 +390,8 @@ TEST_CASE("Tables of points: separators, comments, columns in any order, regions
   CHECK(read_csv<3>(folder.write(table(points, "", "\t")), {.scale = 1e-6}).positions == cloud.positions);
   std::string text = "\xEF\xBB\xBF# points of a cell\r\n\r\n region ,z, \"y\" ,volume,x\r\n";
   for (const Point<3>& X : points)
-    text += fmt::format("{},{}, {} ,{},\"{}\"\r\n# between\r\n", X[0] < 0.5 ? "\"nucleus, soft\"" : "2", X[2], X[1], 1.0 / 64.0, X[0]);
+    text += fmt::format("{},{}, {} ,{},\"{}\"\r\n# between\r\n", X[0] < 0.5 ? "\"nucleus, soft\"" : "2", X[2], X[1],
+                        1.0 / 64.0, X[0]);
   text.resize(text.size() - 13);  // the last line ends with the file
   const PointCloud<3> parts = read_csv<3>(folder.write(text), {.scale = 1e-6});
   CHECK(parts.positions == cloud.positions);
@@ -385,7 +416,8 @@ TEST_CASE("Tables that are none are refused with the line") {
   CHECK(says(refused_csv("# x,y,z\n\n"), "has no line with the names of the columns"));
   CHECK(says(refused_csv("x,y,z\n"), "has no points below the names"));
   CHECK(says(refused_csv("0,0,0\n1,0,0\n"), "line 1: there is no column \"0\": x, y and z are needed"));
-  CHECK(says(refused_csv("x y z\n0 0 0\n"), "line 1: \"x y z\" is no list of columns separated by comma, semicolon or tab"));
+  CHECK(says(refused_csv("x y z\n0 0 0\n"),
+             "line 1: \"x y z\" is no list of columns separated by comma, semicolon or tab"));
   CHECK(says(refused_csv("# one\nx,y\n0,0\n"), "line 2: the column z is missing"));
   CHECK(says(refused_csv("x;y,z\n"), "separated in two ways"));
   CHECK(says(refused_csv("x,y,z,x\n"), "the column x is there twice"));
@@ -399,14 +431,17 @@ TEST_CASE("Tables that are none are refused with the line") {
   CHECK(says(with("\n0,0,0\n", "\n0,nan,0\n"), "line 2: y = nan is not finite"));
   CHECK(says(with("\n0,0,0\n", "\n0,inf,0\n"), "line 2: y = inf is not finite"));
   CHECK(says(with("\n0,0,0\n", "\n0,\"0,0\n"), "line 2: a quotation mark is not closed"));
-  CHECK(says(with("\n0,0,0\n", "\n0,\"0\"1,0\n"), "line 2: there is something between a quotation mark and the next column"));
+  CHECK(says(with("\n0,0,0\n", "\n0,\"0\"1,0\n"),
+             "line 2: there is something between a quotation mark and the next column"));
   CHECK(says(with("\n0,0,0\n", "\n0,\xFF,0\n"), "line 2: there are bytes that are no text"));
   CHECK(says(with("\n0,0,0\n", "\n0,0,0\n0,0,1e-9\n"), "the point of line 2 and the point of line 3 coincide"));
   CHECK(says(refused_csv("x;y;z\n0,5;0;0\n"), "line 2: x = \"0,5\" is no number: write a point, no comma"));
   CHECK(says(refused_csv("x,y,z,region\n0,0,0,\n"), "line 2: the region is empty"));
   CHECK(says(refused_csv("x,y,z,volume\n0,0,0,0\n"), "line 2: volume = 0 is not allowed"));
-  CHECK(says(refused_csv("x,y,z\n0,0,0\n1,0,0\n0,1,0\n"), "there are 3 points: a body of 3 dimensions needs 4 at least"));
-  CHECK(says(refused_csv<2>("x,y,z\n0,0,1\n"), "line 2: z = 1 is not allowed: a cloud of 2 dimensions lies in the plane z = 0"));
+  CHECK(
+      says(refused_csv("x,y,z\n0,0,0\n1,0,0\n0,1,0\n"), "there are 3 points: a body of 3 dimensions needs 4 at least"));
+  CHECK(says(refused_csv<2>("x,y,z\n0,0,1\n"),
+             "line 2: z = 1 is not allowed: a cloud of 2 dimensions lies in the plane z = 0"));
   CHECK(says(refused_csv(good, {.alpha = 0.0}), "PointsOptions.alpha = 0 is not allowed"));
   const Folder folder;
   CHECK_THROWS_WITH_AS((void)read_csv<3>(folder.path / "none.csv"), doctest::Contains("No such file"), FileError);
@@ -419,7 +454,8 @@ TEST_CASE("VTU files: every encoding gives the same bits") {
   const VtuOptions options{.scale = 1e-6, .region_names = {{4, "nucleus"}}};
   const PointCloud<3> expected = read_vtu<3>(folder.write(VtuFile{}.write(body)), options);
   CHECK(expected.regions.size() == 2);
-  CHECK(std::set<std::string>(expected.regions.begin(), expected.regions.end()) == std::set<std::string>{"nucleus", "region -7"});
+  CHECK(std::set<std::string>(expected.regions.begin(), expected.regions.end()) ==
+        std::set<std::string>{"nucleus", "region -7"});
   CHECK(volume_of(expected) == test::relative(1e-18).epsilon(1e-12));
   CHECK(boundary_area(expected) == test::relative(6e-12).epsilon(1e-12));
   int files = 0;
@@ -428,7 +464,8 @@ TEST_CASE("VTU files: every encoding gives the same bits") {
       for (const bool big : {false, true})
         for (const std::uint32_t block : {0u, 512u, 24u})
           for (const bool padded : {false, true}) {
-            VtuFile file{.encoding = encoding, .wide_header = wide, .big_endian = big, .padded_header = padded, .block = block};
+            VtuFile file{
+                .encoding = encoding, .wide_header = wide, .big_endian = big, .padded_header = padded, .block = block};
             VtuOptions how = options;
             if (block > 0) how.decompress = no_compression;
             const PointCloud<3> read = read_vtu<3>(folder.write(file.write(body)), how);
@@ -453,12 +490,14 @@ TEST_CASE("VTU files that the library wrote come back with the same bits") {
   grid.point_data("speed", std::vector<float>(body.size(), 1.0F));
   grid.write(folder.path / "ball.vtu");
   VtuOptions options;
-  for (std::size_t r = 0; r < body.regions.size(); ++r) options.region_names[static_cast<long long>(r)] = body.regions[r];
+  for (std::size_t r = 0; r < body.regions.size(); ++r)
+    options.region_names[static_cast<long long>(r)] = body.regions[r];
   const PointCloud<3> read = read_vtu<3>(folder.path / "ball.vtu", options);
   REQUIRE(read.positions == body.positions);
   REQUIRE(read.cells == body.cells);
   CHECK(read.facets == body.facets);
-  for (std::size_t c = 0; c < body.cells.size(); ++c) CHECK(read.regions[read.cell_regions[c]] == body.regions[body.cell_regions[c]]);
+  for (std::size_t c = 0; c < body.cells.size(); ++c)
+    CHECK(read.regions[read.cell_regions[c]] == body.regions[body.cell_regions[c]]);
 
   const PointCloud<2> sheet = rectangle({.size = {2.0, 1.0}, .cells = {4, 3}});
   VtuGrid plane;
@@ -477,16 +516,21 @@ TEST_CASE("VTU files that the library wrote come back with the same bits") {
 
 TEST_CASE("Voxels, pixels, triangles and tetrahedra of VTU files") {
   const auto file = [](const std::string& points, std::size_t n, int type, const std::string& nodes, int size) {
-    return fmt::format("<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints='{}' NumberOfCells='1'><PointData/><Points>"
-                       "<DataArray type='Float32' NumberOfComponents='3'>{}<InformationKey name='L2'/></DataArray></Points><Cells>"
-                       "<DataArray type='Int32' Name='connectivity'>{}</DataArray><DataArray type='Int32' Name='offsets' format='ascii'>{}</DataArray>"
-                       "<DataArray type='UInt8' Name='types'>{}</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>", n, points, nodes, size, type);
+    return fmt::format(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints='{}' "
+        "NumberOfCells='1'><PointData/><Points>"
+        "<DataArray type='Float32' NumberOfComponents='3'>{}<InformationKey name='L2'/></DataArray></Points><Cells>"
+        "<DataArray type='Int32' Name='connectivity'>{}</DataArray><DataArray type='Int32' Name='offsets' "
+        "format='ascii'>{}</DataArray>"
+        "<DataArray type='UInt8' Name='types'>{}</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>",
+        n, points, nodes, size, type);
   };
   const Folder folder;
   const std::string cube = "0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1";
   CHECK(volume_of(read_vtu<3>(folder.write(file(cube, 8, 11, "0 1 2 3 4 5 6 7", 8)))) == test::relative(1.0));
   CHECK(volume_of(read_vtu<3>(folder.write(file(cube, 8, 10, "0 1 2 4", 4)))) == test::relative(1.0 / 6.0));
-  CHECK(volume_of(read_vtu<2>(folder.write(file("0 0 0 2 0 0 0 1 0 2 1 0", 4, 8, "0 1 2 3", 4)))) == test::relative(2.0));
+  CHECK(volume_of(read_vtu<2>(folder.write(file("0 0 0 2 0 0 0 1 0 2 1 0", 4, 8, "0 1 2 3", 4)))) ==
+        test::relative(2.0));
   CHECK(volume_of(read_vtu<2>(folder.write(file("0 0 0 2 0 0 0 1 0 2 1 0", 4, 5, "0 1 2", 3)))) == test::relative(1.0));
   CHECK(read_vtu<3>(folder.write(file(cube, 8, 11, "0 1 2 3 4 5 6 7", 8))).regions == std::vector<std::string>{"body"});
 }
@@ -508,8 +552,10 @@ TEST_CASE("VTU files that are damaged or no bodies are refused with place and ca
   CHECK(says(with("\"UnstructuredGrid\"", "\"PolyData\""), "line 3: files of type \"PolyData\" are not read"));
   CHECK(says(with("LittleEndian", "PDP"), "byte_order = \"PDP\" is not allowed"));
   CHECK(says(with("UInt32", "UInt16"), "header_type = \"UInt16\" is not allowed"));
-  CHECK(says(with("\"UnstructuredGrid\"", "\"UnstructuredGrid\" type=\"x\""), "the attribute type of <VTKFile> is there twice"));
-  CHECK(says(with("type=\"UnstructuredGrid\"", "type=UnstructuredGrid"), "the value of the attribute type of <VTKFile> is not in quotation marks"));
+  CHECK(says(with("\"UnstructuredGrid\"", "\"UnstructuredGrid\" type=\"x\""),
+             "the attribute type of <VTKFile> is there twice"));
+  CHECK(says(with("type=\"UnstructuredGrid\"", "type=UnstructuredGrid"),
+             "the value of the attribute type of <VTKFile> is not in quotation marks"));
   CHECK(says(with(" version=\"1.0\" byte", " =\"1.0\" byte"), "an attribute of <VTKFile> is expected here"));
   CHECK(says(with("</Points>", "</Cells>"), "</Points> is expected, not </Cells>"));
   CHECK(says(with("made by hand -->", "made by hand"), "line 2: a comment or an instruction is not closed"));
@@ -519,40 +565,55 @@ TEST_CASE("VTU files that are damaged or no bodies are refused with place and ca
   CHECK(says(with("<Points>", deep), "nested too deeply"));
   // Pieces and arrays.
   CHECK(says(with("<Piece", "<Piece NumberOfPoints=\"0\"/><Piece"), "line 4: there are 2 pieces"));
-  CHECK(says(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"28\""), "line 7: array \"Points\": 84 numbers are expected, 81 are there"));
-  CHECK(says(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"999999999\""), "999999999 points are announced, more than the file can hold"));
-  CHECK(says(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"-1\""), "line 5: NumberOfPoints of <Piece> must be a whole number, not \"-1\""));
+  CHECK(says(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"28\""),
+             "line 7: array \"Points\": 84 numbers are expected, 81 are there"));
+  CHECK(says(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"999999999\""),
+             "999999999 points are announced, more than the file can hold"));
+  CHECK(says(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"-1\""),
+             "line 5: NumberOfPoints of <Piece> must be a whole number, not \"-1\""));
   CHECK(says(with("NumberOfCells=\"9\"", ""), "NumberOfCells of <Piece> must be a whole number"));
-  CHECK(says(with("NumberOfCells=\"9\"", "NumberOfCells=\"10\""), "array \"types\": 10 numbers are expected, 9 are there"));
-  CHECK(says(with("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""), "points must have NumberOfComponents=\"3\""));
+  CHECK(says(with("NumberOfCells=\"9\"", "NumberOfCells=\"10\""),
+             "array \"types\": 10 numbers are expected, 9 are there"));
+  CHECK(
+      says(with("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""), "points must have NumberOfComponents=\"3\""));
   CHECK(says(with("Name=\"types\"", "Name=\"kinds\""), "<Cells> has no array types"));
   CHECK(says(with("<Cells>", "<Cells><DataArray Name=\"offsets\"/>"), "<Cells> has two arrays offsets"));
   CHECK(says(with("<Cells>", "<Cell/><Other>"), "</Other> is expected, not </Cells>"));
   CHECK(says(with("\"Float64\"", "\"Float16\""), "array \"Points\": the type \"Float16\" is not read"));
   CHECK(says(with("\"Float64\"", "\"String\""), "the type \"String\" is not read"));
-  CHECK(says(with("\"UInt8\"", "\"Float32\""), "array \"types\": the type \"Float32\" is not allowed: it must be one of whole numbers"));
+  CHECK(says(with("\"UInt8\"", "\"Float32\""),
+             "array \"types\": the type \"Float32\" is not allowed: it must be one of whole numbers"));
   CHECK(says(with("format=\"ascii\"", "format=\"hex\""), "format = \"hex\" is not allowed"));
-  CHECK(says(with("format=\"ascii\"", "format=\"appended\" offset=\"0\""), "its data are appended, but the file has no <AppendedData>"));
+  CHECK(says(with("format=\"ascii\"", "format=\"appended\" offset=\"0\""),
+             "its data are appended, but the file has no <AppendedData>"));
   CHECK(says(with("0.5 ", "0.5x "), "array \"Points\": a number is expected, not \"0.5x\""));
   CHECK(says(with("\n12 12", "\n1.5 12"), "array \"types\": a whole number is expected, not \"1.5\""));
   // Cells.
   CHECK(says(with("12 12 12 12 12 12 12 12 1", "12 12 13 12 12 12 12 12 1"), "cell 2 of VTK's type 13 is not read"));
-  CHECK(says(with("12 12 12 12 12 12 12 12 1", "12 12 10 12 12 12 12 12 1"), "cell 2 of VTK's type 10 has 8 nodes, not 4"));
+  CHECK(says(with("12 12 12 12 12 12 12 12 1", "12 12 10 12 12 12 12 12 1"),
+             "cell 2 of VTK's type 10 has 8 nodes, not 4"));
   CHECK(says(with("12 12 12 12 12 12 12 12 1", "1 1 1 1 1 1 1 1 1"), "there are no cells of 3 dimensions"));
   CHECK(says(with("8 16 24", "8 16 14"), "the offset 14 of cell 2 is not allowed: it must lie between 16 and 65"));
   CHECK(says(with(" 65 ", " 66 "), "the offset 66 of cell 8 is not allowed"));
   CHECK(says(with(" 65 ", " 64 "), "the cells use 64 entries of the connectivity, 65 are there"));
   const std::string first = fmt::format("{} {} ", body.cells[0][0], body.cells[0][1]);
-  CHECK(says(with("\n" + first, fmt::format("\n{} 27 ", body.cells[0][0])), "cell 0 uses node 27, but there are 27 nodes, counted from 0"));
+  CHECK(says(with("\n" + first, fmt::format("\n{} 27 ", body.cells[0][0])),
+             "cell 0 uses node 27, but there are 27 nodes, counted from 0"));
   CHECK(says(with("\n" + first, fmt::format("\n{} -1 ", body.cells[0][0])), "cell 0 uses node -1"));
-  CHECK(says(with("\n" + first, fmt::format("\n{} {} ", body.cells[0][0], body.cells[0][0])), "cell 0 uses a node twice"));
-  CHECK(says(with("\n" + first, fmt::format("\n{} {} ", body.cells[0][1], body.cells[0][0])), "cell 0 is inverted or degenerate at ("));
+  CHECK(says(with("\n" + first, fmt::format("\n{} {} ", body.cells[0][0], body.cells[0][0])),
+             "cell 0 uses a node twice"));
+  CHECK(says(with("\n" + first, fmt::format("\n{} {} ", body.cells[0][1], body.cells[0][0])),
+             "cell 0 is inverted or degenerate at ("));
   CHECK(says(with("0.5 ", "nan "), "has a position that is not finite"));
   CHECK(says(refused_vtu<2>(good), "does not lie in the plane z = 0"));
   // Regions.
-  CHECK(says(with("Name=\"region\"", "Name=\"kind\"", {.region = "region"}), "has no cell array \"region\"; its cell arrays: \"kind\""));
-  CHECK(says(with("Name=\"region\"", "Name=\"region\" NumberOfComponents=\"2\""), "array \"region\": regions must have one component"));
-  CHECK(says(with("\"Int32\" Name=\"region\" format=\"ascii\">\n4 ", "\"Float32\" Name=\"region\" format=\"ascii\">\n4.5 "), "array \"region\": 4.5, the region of cell 0, is no whole number"));
+  CHECK(says(with("Name=\"region\"", "Name=\"kind\"", {.region = "region"}),
+             "has no cell array \"region\"; its cell arrays: \"kind\""));
+  CHECK(says(with("Name=\"region\"", "Name=\"region\" NumberOfComponents=\"2\""),
+             "array \"region\": regions must have one component"));
+  CHECK(says(
+      with("\"Int32\" Name=\"region\" format=\"ascii\">\n4 ", "\"Float32\" Name=\"region\" format=\"ascii\">\n4.5 "),
+      "array \"region\": 4.5, the region of cell 0, is no whole number"));
   CHECK(says(refused_vtu(good, {.scale = -1.0}), "MeshOptions.scale = -1 m is not allowed"));
 
   // Binary data.
@@ -564,7 +625,8 @@ TEST_CASE("VTU files that are damaged or no bodies are refused with place and ca
     return refused_vtu(text);
   };
   CHECK(refused_vtu(raw) == "accepted");
-  CHECK(says(raw_with("encoding=\"raw\"", "encoding=\"hex\""), "encoding = \"hex\" of the appended data is not allowed"));
+  CHECK(
+      says(raw_with("encoding=\"raw\"", "encoding=\"hex\""), "encoding = \"hex\" of the appended data is not allowed"));
   CHECK(says(raw_with("   _", "   -"), "appended data must begin with \"_\""));
   CHECK(says(raw_with("offset=\"0\"", "offset=\"99999\""), "offset = 99999 is beyond the"));
   CHECK(says(raw_with("offset=\"0\"", "offset=\"8\""), "array \"Points\": "));
@@ -575,9 +637,11 @@ TEST_CASE("VTU files that are damaged or no bodies are refused with place and ca
   coded[coded.find("iAIAA") + 8] = '?';
   CHECK(says(refused_vtu(coded), "its data end early, or are no base64 where they should be"));
   const std::string packed = VtuFile{.encoding = VtuFile::raw, .block = 64}.write(body);
-  CHECK(says(refused_vtu(packed), "it is compressed: write the file without compression, or give VtuOptions.decompress"));
+  CHECK(
+      says(refused_vtu(packed), "it is compressed: write the file without compression, or give VtuOptions.decompress"));
   CHECK(refused_vtu(packed, {.decompress = no_compression}) == "accepted");
-  CHECK(says(refused_vtu(packed, {.decompress = [](std::string_view, std::size_t) { return std::string("x"); }}), "its compressed data are damaged"));
+  CHECK(says(refused_vtu(packed, {.decompress = [](std::string_view, std::size_t) { return std::string("x"); }}),
+             "its compressed data are damaged"));
   std::string other = packed;
   other.replace(other.find("vtkZLib"), 7, "vtkLZMA");
   CHECK(says(refused_vtu(other), "data compressed by \"vtkLZMADataCompressor\" are not read"));
@@ -589,7 +653,8 @@ TEST_CASE("Meshes whose surface is none of a body are refused") {
     for (const Point<3>& corner : corners) {
       PointCloud<3>::Cell cell;
       for (std::size_t a = 0; a < 8; ++a) {
-        const Point<3> X = corner + Point<3>(static_cast<double>(a & 1), static_cast<double>(a >> 1 & 1), static_cast<double>(a >> 2 & 1));
+        const Point<3> X = corner + Point<3>(static_cast<double>(a & 1), static_cast<double>(a >> 1 & 1),
+                                             static_cast<double>(a >> 2 & 1));
         auto found = std::find(cloud.positions.begin(), cloud.positions.end(), X);
         if (found == cloud.positions.end()) found = cloud.positions.insert(cloud.positions.end(), X);
         cell[a] = static_cast<Index>(found - cloud.positions.begin());
@@ -609,7 +674,8 @@ TEST_CASE("Meshes whose surface is none of a body are refused") {
   CHECK(mesh({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}}) == "accepted");
   CHECK(says(mesh({{0.0, 0.0, 0.0}, {1.0, 1.0, 0.0}}), "the surface is not that of a body at (1, 1, 0) m"));
   CHECK(says(mesh({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}), "the surface is not that of a body at (1, 1, 1) m"));
-  CHECK(says(mesh({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, true), "cells 1 and 2 overlap: they stand on the same side of a face at (1, 0, 0) m"));
+  CHECK(says(mesh({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, true),
+             "cells 1 and 2 overlap: they stand on the same side of a face at (1, 0, 0) m"));
 }
 
 TEST_CASE("No truncation and no changed byte of a table or a VTU file is more than an error") {
@@ -620,11 +686,13 @@ TEST_CASE("No truncation and no changed byte of a table or a VTU file is more th
     const VtuOptions options{.decompress = no_compression};
     const std::string good = file.write(body);
     REQUIRE(refused_vtu(good, options) == "accepted");
-    for (std::size_t cut = 0; cut + 2 < good.size(); cut += 61) CHECK(refused_vtu(good.substr(0, cut), options) != "accepted");
+    for (std::size_t cut = 0; cut + 2 < good.size(); cut += 61)
+      CHECK(refused_vtu(good.substr(0, cut), options) != "accepted");
     int refused = 0;
     for (int k = 0; k < 200; ++k) {
       std::string bad = good;
-      bad[static_cast<std::size_t>(random.uniform() * static_cast<double>(bad.size()))] = static_cast<char>(256.0 * random.uniform());
+      bad[static_cast<std::size_t>(random.uniform() * static_cast<double>(bad.size()))] =
+          static_cast<char>(256.0 * random.uniform());
       refused += refused_vtu(bad, options) != "accepted" ? 1 : 0;
     }
     CHECK(refused > 60);
@@ -633,7 +701,8 @@ TEST_CASE("No truncation and no changed byte of a table or a VTU file is more th
   int refused = 0;
   for (int k = 0; k < 300; ++k) {
     std::string bad = good;
-    bad[static_cast<std::size_t>(random.uniform() * static_cast<double>(bad.size()))] = static_cast<char>(256.0 * random.uniform());
+    bad[static_cast<std::size_t>(random.uniform() * static_cast<double>(bad.size()))] =
+        static_cast<char>(256.0 * random.uniform());
     refused += refused_csv(bad) != "accepted" ? 1 : 0;
   }
   CHECK(refused > 150);

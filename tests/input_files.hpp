@@ -13,7 +13,8 @@ namespace tactoid::test {
 
 /// A folder that goes with the test.
 struct Folder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("tactoid_input_{}", std::random_device{}());
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / fmt::format("tactoid_input_{}", std::random_device{}());
   Folder() { std::filesystem::create_directories(path); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
@@ -36,7 +37,8 @@ std::string refusal(const Call& call) {
 }
 /// Whether a refusal is one sentence that says so.
 inline bool says(const std::string& message, const std::string& what) {
-  const bool does = message.find(what) != std::string::npos && message.find('\n') == std::string::npos && message.back() == '.';
+  const bool does =
+      message.find(what) != std::string::npos && message.find('\n') == std::string::npos && message.back() == '.';
   if (!does) MESSAGE(message);
   return does;
 }

@@ -39,10 +39,10 @@ template <std::size_t N>
   }
 }
 
-/// The Delaunay triangulation of points, incremental (Bowyer and Watson), in exact arithmetic: coordinates are rounded to
-/// 2⁻²² of the largest extent. "Inside the circumscribed ball" is measured by a quadratic form a few per cent off |x|²,
-/// positive, with different off-diagonals: the points of a lattice, of which eight lie on every sphere, are then cut in the
-/// same way everywhere, without flat simplices, and the result depends on the order of the points no more.
+/// The Delaunay triangulation of points, incremental (Bowyer and Watson), in exact arithmetic: coordinates are rounded
+/// to 2⁻²² of the largest extent. "Inside the circumscribed ball" is measured by a quadratic form a few per cent off
+/// |x|², positive, with different off-diagonals: the points of a lattice, of which eight lie on every sphere, are then
+/// cut in the same way everywhere, without flat simplices, and the result depends on the order of the points no more.
 template <int D>
 class Delaunay {
   static_assert(D == 2 || D == 3, "Clouds are triangulated in 2 and 3 dimensions.");
@@ -118,8 +118,10 @@ class Delaunay {
     for (std::size_t i = 0; i < vertices; ++i) {
       for (std::size_t k = 0; k + 1 < vertices; ++k) m[i][k] = points_[s[i]][k] - points_[p][k];
       const auto& d = m[i];
-      if constexpr (D == 2) m[i][2] = 32 * (d[0] * d[0] + d[1] * d[1]) - 6 * d[0] * d[1];
-      else m[i][3] = 32 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - 6 * d[0] * d[1] - 4 * d[1] * d[2] - 2 * d[0] * d[2];
+      if constexpr (D == 2)
+        m[i][2] = 32 * (d[0] * d[0] + d[1] * d[1]) - 6 * d[0] * d[1];
+      else
+        m[i][3] = 32 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - 6 * d[0] * d[1] - 4 * d[1] * d[2] - 2 * d[0] * d[2];
     }
     const WideInteger sign = determinant(m);
     return D % 2 == 0 ? sign > 0 : sign < 0;
@@ -159,7 +161,8 @@ class Delaunay {
     const Index first = locate(p);
     for (const Index v : cells_[first].vertex)
       if (v != infinite && points_[v] == points_[p])
-        throw GeometryError(fmt::format("points {} and {} coincide (within 2^-22 of the extent of the cloud).", std::min(v, p), std::max(v, p)));
+        throw GeometryError(fmt::format("points {} and {} coincide (within 2^-22 of the extent of the cloud).",
+                                        std::min(v, p), std::max(v, p)));
     std::vector<Index> conflict = {first};
     cells_[first].mark = 2 * step_;
     cells_[first].queued = step_;
@@ -210,7 +213,8 @@ class Delaunay {
   [[nodiscard]] static bool shares_face(const Cell& other, const Index& back, const Simplex& s, std::size_t place) {
     const auto opposite = static_cast<std::size_t>(&back - other.across.data());
     for (std::size_t k = 0; k < vertices; ++k)
-      if (k != opposite && (std::find(s.begin(), s.end(), other.vertex[k]) == s.end() || other.vertex[k] == s[place])) return false;
+      if (k != opposite && (std::find(s.begin(), s.end(), other.vertex[k]) == s.end() || other.vertex[k] == s[place]))
+        return false;
     return true;
   }
 

@@ -63,20 +63,22 @@ template <int D>
   return regions.size() - 1;
 }
 
-/// Vertices at which a surface of closed loops of vertices (facets; the two ends, where D = 2) is not that of a body: the
-/// sides of its facets have not two facets each, or its facets around a vertex are not one ring. Ascending.
+/// Vertices at which a surface of closed loops of vertices (facets; the two ends, where D = 2) is not that of a body:
+/// the sides of its facets have not two facets each, or its facets around a vertex are not one ring. Ascending.
 template <int D, class Loops>
   requires(D > 1)
 [[nodiscard]] std::vector<Index> singular_vertices(const Loops& loops) {
   using Side = std::array<Index, static_cast<std::size_t>(D) - 1>;
-  std::vector<std::pair<Side, Index>> sides;                // with the facet
-  std::vector<std::pair<Index, Index>> corners;             // vertex, facet
+  std::vector<std::pair<Side, Index>> sides;     // with the facet
+  std::vector<std::pair<Index, Index>> corners;  // vertex, facet
   for (std::size_t f = 0; f < loops.size(); ++f)
     for (std::size_t k = 0; k < loops[f].size(); ++k) {
       const Index a = loops[f][k], b = loops[f][(k + 1) % loops[f].size()];
       corners.emplace_back(a, static_cast<Index>(f));
-      if constexpr (D == 2) sides.push_back({Side{a}, static_cast<Index>(f)});
-      else sides.push_back({Side{std::min(a, b), std::max(a, b)}, static_cast<Index>(f)});
+      if constexpr (D == 2)
+        sides.push_back({Side{a}, static_cast<Index>(f)});
+      else
+        sides.push_back({Side{std::min(a, b), std::max(a, b)}, static_cast<Index>(f)});
     }
   std::sort(sides.begin(), sides.end());
   std::sort(corners.begin(), corners.end());
@@ -98,7 +100,8 @@ template <int D, class Loops>
           const Index a = loop[k], b = loop[(k + 1) % loop.size()];
           if (a != v && b != v) continue;
           const Side side = {std::min(a, b), std::max(a, b)};
-          for (auto at = std::lower_bound(sides.begin(), sides.end(), std::pair(side, Index{0})); at != sides.end() && at->first == side; ++at)
+          for (auto at = std::lower_bound(sides.begin(), sides.end(), std::pair(side, Index{0}));
+               at != sides.end() && at->first == side; ++at)
             if (std::find(near.begin(), near.end(), at->second) == near.end()) near.push_back(at->second);
         }
       }
@@ -118,11 +121,12 @@ template <std::size_t N>
 }
 
 /// Every triangle becomes three quadrilaterals, every tetrahedron four hexahedra, with new particles in the middle of
-/// edges, faces and cells. Neighbours share them: a mesh that fits together still does. Where `region_of` is not empty, the
-/// part of a cell at a vertex is in that vertex's region.
+/// edges, faces and cells. Neighbours share them: a mesh that fits together still does. Where `region_of` is not empty,
+/// the part of a cell at a vertex is in that vertex's region.
 template <int D>
   requires(D > 1)
-void split_simplices(std::vector<Point<D>>& positions, std::vector<MeshCell<D>>& cells, std::span<const std::size_t> region_of = {}) {
+void split_simplices(std::vector<Point<D>>& positions, std::vector<MeshCell<D>>& cells,
+                     std::span<const std::size_t> region_of = {}) {
   std::map<std::vector<std::size_t>, std::size_t> centers;  // of the sorted vertices of an edge, a face, a cell
   const auto center = [&](std::vector<std::size_t> vertices) {
     std::sort(vertices.begin(), vertices.end());
@@ -151,11 +155,12 @@ void split_simplices(std::vector<Point<D>>& positions, std::vector<MeshCell<D>>&
   cells = std::move(split);
 }
 
-/// Refuses cells that overlap or whose surface is none of a body: a side belongs to one cell, or to two that stand on both
-/// sides of it; facets meet in pairs along edges, and in one ring around a vertex.
+/// Refuses cells that overlap or whose surface is none of a body: a side belongs to one cell, or to two that stand on
+/// both sides of it; facets meet in pairs along edges, and in one ring around a vertex.
 template <int D>
   requires(D > 1)
-void check_surface(const PointCloud<D>& cloud, const std::vector<std::size_t>& tags, std::string_view where) {
+void check_surface(const PointCloud<D>& cloud, const std::vector<std::size_t>& tags,
+                   std::string_view where) {
   using Facet = typename PointCloud<D>::Facet;
   struct Side {
     Facet key;  // the loop from its least vertex, in the direction of its lesser neighbour
@@ -170,8 +175,10 @@ void check_surface(const PointCloud<D>& cloud, const std::vector<std::size_t>& t
     for (const Facet& facet : extract_facets(one)) {
       Side side{loop_of(facet), false, c};
       std::rotate(side.key.begin(), std::min_element(side.key.begin(), side.key.end()), side.key.end());
-      if constexpr (D == 2) side.turned = side.key[0] != facet[0];
-      else if (side.key[3] < side.key[1]) side.turned = true, std::swap(side.key[1], side.key[3]);
+      if constexpr (D == 2)
+        side.turned = side.key[0] != facet[0];
+      else if (side.key[3] < side.key[1])
+        side.turned = true, std::swap(side.key[1], side.key[3]);
       sides.push_back(side);
     }
   }
@@ -179,18 +186,22 @@ void check_surface(const PointCloud<D>& cloud, const std::vector<std::size_t>& t
   for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
     while (last < sides.size() && sides[last].key == sides[first].key) ++last;
     if (last - first > 2 || (last - first == 2 && sides[first].turned == sides[first + 1].turned))
-      throw GeometryError(fmt::format("{}: cells {} and {} overlap: they stand on the same side of a face at {}.", where, tags[sides[last - 2].cell],
-                                      tags[sides[last - 1].cell], describe<D>(cloud.positions[sides[first].key[0]])));
+      throw GeometryError(fmt::format("{}: cells {} and {} overlap: they stand on the same side of a face at {}.",
+                                      where, tags[sides[last - 2].cell], tags[sides[last - 1].cell],
+                                      describe<D>(cloud.positions[sides[first].key[0]])));
   }
   std::vector<Facet> loops;
   for (const Facet& facet : cloud.facets) loops.push_back(loop_of(facet));
   if (const std::vector<Index> singular = singular_vertices<D>(loops); !singular.empty())
-    throw GeometryError(fmt::format("{}: the surface is not that of a body at {}: parts of it touch there in a point or along an edge only, or "
-                                    "cells do not fit together.", where, describe<D>(cloud.positions[singular.front()])));
+    throw GeometryError(fmt::format(
+        "{}: the surface is not that of a body at {}: parts of it touch there in a point or along an edge only, or "
+        "cells do not fit together.",
+        where, describe<D>(cloud.positions[singular.front()])));
 }
 
-/// The cloud of a mesh: only vertices that cells use become particles. `where` names the file in messages; `tags` are the
-/// file's numbers of the positions; `region_of` (if not empty) are regions of the vertices of simplices, see split_simplices.
+/// The cloud of a mesh: only vertices that cells use become particles. `where` names the file in messages; `tags` are
+/// the file's numbers of the positions; `region_of` (if not empty) are regions of the vertices of simplices, see
+/// split_simplices.
 template <int D>
 [[nodiscard]] PointCloud<D> cloud_of_mesh(std::vector<Point<D>> positions, const std::vector<std::size_t>& tags,
                                           std::vector<MeshCell<D>> cells, std::vector<std::string> regions,
@@ -216,7 +227,8 @@ template <int D>
     if (!is_new) refuse(fmt::format("cells {} and {} have the same nodes.", other->second, cell.tag));
     if (cell.vertices.size() != simplex) continue;
     Eigen::Matrix<double, D, D> edges;
-    for (int k = 0; k < D; ++k) edges.col(k) = positions[cell.vertices[static_cast<std::size_t>(k) + 1]] - positions[cell.vertices[0]];
+    for (int k = 0; k < D; ++k)
+      edges.col(k) = positions[cell.vertices[static_cast<std::size_t>(k) + 1]] - positions[cell.vertices[0]];
     if (!(edges.determinant() > 0.0))
       refuse(fmt::format("cell {} at {} is inverted or flat (its volume is {:g} of a unit cell).", cell.tag,
                          describe<D>(positions[cell.vertices[0]]), edges.determinant()));

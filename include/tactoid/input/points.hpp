@@ -24,12 +24,12 @@ namespace tactoid {
 /// How points without cells become a cloud.
 struct PointsOptions {
   double scale = 1.0;  ///< m per unit of length of the points; > 0
-  /// A tetrahedron (triangle) of the Delaunay triangulation belongs to the body if the radius of its circumscribed ball is
-  /// at most this many spacings; > 0. A lattice needs 0.87 (D = 2: 0.71). Larger values close gaps and hollows.
+  /// A tetrahedron (triangle) of the Delaunay triangulation belongs to the body if the radius of its circumscribed ball
+  /// is at most this many spacings; > 0. A lattice needs 0.87 (D = 2: 0.71). Larger values close gaps and hollows.
   double alpha = 1.4;
   /// Points nearer to each other than this part of the spacing are refused as coincident; in [0, 1).
   double coincidence = 1e-6;
-  /// Where volumes are given: largest difference of their sum from the volume of the cells, as a part of the latter; > 0.
+  /// Where volumes are given: largest difference of their sum from the volume of the cells, over the latter; > 0.
   double volume_tolerance = 0.1;
 
   void validate() const {
@@ -43,22 +43,23 @@ struct PointsOptions {
 /// Points as a file gives them: all lists that are not empty have an entry per point.
 template <int D>
 struct Points {
-  std::vector<Point<D>> positions{};        ///< in units of length of the file
-  std::vector<double> volumes{};            ///< in its units³ (units²); empty where none are given
-  std::vector<std::size_t> point_regions{}; ///< indices into `regions`; empty: all 0
+  std::vector<Point<D>> positions{};         ///< in units of length of the file
+  std::vector<double> volumes{};             ///< in its units³ (units²); empty where none are given
+  std::vector<std::size_t> point_regions{};  ///< indices into `regions`; empty: all 0
   std::vector<std::string> regions = {"body"};
 };
 
 namespace detail {
 
-/// Simplices between points that are a body: Delaunay's without those that are too large (alpha shape), without slivers.
+/// Simplices between points that are a body: Delaunay's without those that are too large (alpha shape), without
+/// slivers.
 template <int D>
 class AlphaShape {
  public:
   static constexpr std::size_t vertices = static_cast<std::size_t>(D) + 1;
   using Simplex = std::array<Index, vertices>;
-  /// Of a regular tetrahedron the quality is 0.71, of a regular triangle 0.87. Below this number a simplex is a sliver, which is
-  /// replaced where others can fill its place,
+  /// Of a regular tetrahedron the quality is 0.71, of a regular triangle 0.87. Below this number a simplex is a sliver,
+  /// which is replaced where others can fill its place,
   static constexpr double sliver = 0.01;
   /// and below this one it is taken off the surface: its height is less than a thousandth of its edges.
   static constexpr double flat = 1e-3;
@@ -99,8 +100,8 @@ class AlphaShape {
     return e;
   }
 
-  /// Radius of the ball through the vertices, over the mean spacing there. The ball is one of the triangulation's own metric,
-  /// in which it is empty of other points: slivers would have any radius in another one.
+  /// Radius of the ball through the vertices, over the mean spacing there. The ball is one of the triangulation's own
+  /// metric, in which it is empty of other points: slivers would have any radius in another one.
   [[nodiscard]] double relative_radius(const Simplex& s) const {
     const Eigen::Matrix<double, D, D> metric = Delaunay<D>::metric(), e = edges(s);
     Point<D> squares;
@@ -149,7 +150,8 @@ class AlphaShape {
       radius_.push_back(relative_radius(simplices_[s]));
       quality_.push_back(quality(simplices_[s]));
       // Round-off decides about the radius of a flat one; its edges tell whether it lies between neighbours.
-      kept_[s] = quality_[s] < flat ? longest_edge(simplices_[s]) <= 2.0 * alpha_ * mean_spacing(simplices_[s]) : radius_[s] <= alpha_;
+      kept_[s] = quality_[s] < flat ? longest_edge(simplices_[s]) <= 2.0 * alpha_ * mean_spacing(simplices_[s])
+                                    : radius_[s] <= alpha_;
     }
   }
   [[nodiscard]] double longest_edge(const Simplex& s) const {
@@ -172,7 +174,8 @@ class AlphaShape {
       const std::size_t s = open.back();
       open.pop_back();
       const bool at_surface = std::any_of(across_[s].begin(), across_[s].end(), [&](Index t) { return outside(t); });
-      const bool needed = std::any_of(simplices_[s].begin(), simplices_[s].end(), [&](Index v) { return users[v] == 1; });
+      const bool needed =
+          std::any_of(simplices_[s].begin(), simplices_[s].end(), [&](Index v) { return users[v] == 1; });
       if (!kept_[s] || !at_surface || needed) continue;
       kept_[s] = 0;
       for (const Index v : simplices_[s]) --users[v];
@@ -181,8 +184,8 @@ class AlphaShape {
     }
   }
 
-  /// Where the surface touches itself in an edge or a point, the smallest of the simplices that were left out there come
-  /// back, one per place and round, up to twice the radius that is allowed elsewhere.
+  /// Where the surface touches itself in an edge or a point, the smallest of the simplices that were left out there
+  /// come back, one per place and round, up to twice the radius that is allowed elsewhere.
   void mend() {
     for (int round = 0; round < 50; ++round) {
       std::vector<std::array<Index, vertices - 1>> faces;
@@ -209,9 +212,9 @@ class AlphaShape {
     }
   }
 
-  // Replacing slivers: of the ways to fill the place of the tetrahedra around an edge, or of two that share a face, with others
-  // between the same points, the one whose worst tetrahedron is best. (L. Freitag, C. Ollivier-Gooch, Int. J. Numer. Meth.
-  // Engng 1997, 40, 3979.)
+  // Replacing slivers: of the ways to fill the place of the tetrahedra around an edge, or of two that share a face,
+  // with others between the same points, the one whose worst tetrahedron is best. (L. Freitag, C. Ollivier-Gooch, Int.
+  // J. Numer. Meth. Engng 1997, 40, 3979.)
   struct Change {
     double quality = -std::numeric_limits<double>::infinity();
     std::vector<std::size_t> gone;
@@ -266,9 +269,12 @@ class AlphaShape {
     const Index apex = v[p[0]], a = v[p[1]], b = v[p[2]], c = v[p[3]];
     for (const std::size_t t : users_[a]) {
       const Simplex& w = simplices_[t];
-      if (t == s || std::find(w.begin(), w.end(), b) == w.end() || std::find(w.begin(), w.end(), c) == w.end()) continue;
+      if (t == s || std::find(w.begin(), w.end(), b) == w.end() || std::find(w.begin(), w.end(), c) == w.end())
+        continue;
       const Index other = *std::find_if(w.begin(), w.end(), [&](Index x) { return x != a && x != b && x != c; });
-      Change change{std::numeric_limits<double>::infinity(), {s, t}, {{apex, other, a, b}, {apex, other, b, c}, {apex, other, c, a}}};
+      Change change{std::numeric_limits<double>::infinity(),
+                    {s, t},
+                    {{apex, other, a, b}, {apex, other, b, c}, {apex, other, c, a}}};
       for (const Simplex& made : change.made) change.quality = std::min(change.quality, quality(made));
       propose(std::move(change), best);
     }
@@ -290,20 +296,24 @@ class AlphaShape {
     if (n < 3 || n > 9) return;
     std::vector<Index> ring = {links[0].first};
     while (ring.size() <= n) {
-      const auto next = std::find_if(links.begin(), links.end(), [&](const auto& link) { return link.first == ring.back(); });
+      const auto next =
+          std::find_if(links.begin(), links.end(), [&](const auto& link) { return link.first == ring.back(); });
       if (next == links.end()) return;  // an edge of the surface
       ring.push_back(next->second);
       if (ring.back() == ring.front()) break;
     }
     if (ring.size() != n + 1) return;
     // best_of[i][j]: the best worst quality over the part of the ring from i to j, with the tip of the triangle on i–j.
-    std::vector<std::vector<std::pair<double, std::size_t>>> best_of(n, std::vector<std::pair<double, std::size_t>>(n, {std::numeric_limits<double>::infinity(), 0}));
+    std::vector<std::vector<std::pair<double, std::size_t>>> best_of(
+        n, std::vector<std::pair<double, std::size_t>>(n, {std::numeric_limits<double>::infinity(), 0}));
     for (std::size_t length = 2; length < n; ++length)
       for (std::size_t i = 0; i + length < n; ++i) {
         const std::size_t j = i + length;
         best_of[i][j].first = -std::numeric_limits<double>::infinity();
         for (std::size_t k = i + 1; k < j; ++k) {
-          const double worst = std::min({quality({ring[i], ring[k], ring[j], b}), quality({ring[k], ring[i], ring[j], a}), best_of[i][k].first, best_of[k][j].first});
+          const double worst =
+              std::min({quality({ring[i], ring[k], ring[j], b}), quality({ring[k], ring[i], ring[j], a}),
+                        best_of[i][k].first, best_of[k][j].first});
           if (worst > best_of[i][j].first) best_of[i][j] = {worst, k};
         }
       }
@@ -333,12 +343,14 @@ class AlphaShape {
 
 /// cloud_of_points with words for messages: `name(i)` is "point 3" or "the point of line 5".
 template <int D, class Name>
-[[nodiscard]] PointCloud<D> cloud_of_points(Points<D> points, const PointsOptions& options, std::string_view where, const Name& name) {
+[[nodiscard]] PointCloud<D> cloud_of_points(Points<D> points, const PointsOptions& options, std::string_view where,
+                                            const Name& name) {
   options.validate();
   const auto refuse = [&](std::string_view what) { throw GeometryError(fmt::format("{}: {}", where, what)); };
   const std::size_t count = points.positions.size();
   if (count <= static_cast<std::size_t>(D))
-    refuse(fmt::format("there {} {} point{}: a body of {} dimensions needs {} at least.", count == 1 ? "is" : "are", count, count == 1 ? "" : "s", D, D + 1));
+    refuse(fmt::format("there {} {} point{}: a body of {} dimensions needs {} at least.", count == 1 ? "is" : "are",
+                       count, count == 1 ? "" : "s", D, D + 1));
   if (!points.volumes.empty() && points.volumes.size() != count)
     refuse(fmt::format("there are {} points, but {} volumes.", count, points.volumes.size()));
   if (!points.point_regions.empty() && points.point_regions.size() != count)
@@ -348,11 +360,13 @@ template <int D, class Name>
     if (!points.volumes.empty() && !(points.volumes[i] > 0.0 && std::isfinite(points.volumes[i])))
       refuse(fmt::format("{} has the volume {:g}: it must be positive and finite.", name(i), points.volumes[i]));
     if (!points.point_regions.empty() && points.point_regions[i] >= points.regions.size())
-      refuse(fmt::format("{} is in region {}, but there are only {} regions.", name(i), points.point_regions[i], points.regions.size()));
+      refuse(fmt::format("{} is in region {}, but there are only {} regions.", name(i), points.point_regions[i],
+                         points.regions.size()));
     points.positions[i] *= options.scale;
   }
 
-  // The spacing around a point: of the volumes, or the mean distance to the 2 D nearest points, which are the neighbours in a lattice.
+  // The spacing around a point: of the volumes, or the mean distance to the 2 D nearest points, which are the
+  // neighbours in a lattice.
   Point<D> low = points.positions[0], high = low;
   for (const Point<D>& X : points.positions) low = low.cwiseMin(X), high = high.cwiseMax(X);
   const double resolved = 1e-6 * (high - low).maxCoeff();
@@ -362,12 +376,15 @@ template <int D, class Name>
     const std::vector<Neighbor> near = search.nearest(points.positions[i], 1 + 2 * static_cast<std::size_t>(D));
     double sum = 0.0;
     for (const Neighbor& n : near) sum += n.distance;
-    spacing[i] = points.volumes.empty() ? sum / static_cast<double>(near.size() - 1) : options.scale * std::pow(points.volumes[i], 1.0 / D);
+    spacing[i] = points.volumes.empty() ? sum / static_cast<double>(near.size() - 1)
+                                        : options.scale * std::pow(points.volumes[i], 1.0 / D);
     const Index other = near[0].index == i ? near[1].index : near[0].index;
     const double distance = (points.positions[i] - points.positions[other]).norm();
     if (distance <= std::max(options.coincidence * spacing[i], resolved))
-      refuse(fmt::format("{} and {} coincide at {}: points must be farther apart than a millionth of the extent of the body.", name(std::min<std::size_t>(i, other)),
-                         name(std::max<std::size_t>(i, other)), describe<D>(points.positions[i])));
+      refuse(fmt::format(
+          "{} and {} coincide at {}: points must be farther apart than a millionth of the extent of the body.",
+          name(std::min<std::size_t>(i, other)), name(std::max<std::size_t>(i, other)),
+          describe<D>(points.positions[i])));
   }
 
   std::vector<MeshCell<D>> cells;
@@ -385,43 +402,48 @@ template <int D, class Name>
   } catch (const GeometryError& error) {
     refuse(error.what());
   }
-  if (cells.empty()) refuse("the points enclose no volume: they lie too nearly in a plane or on a line, or too far apart.");
+  if (cells.empty())
+    refuse("the points enclose no volume: they lie too nearly in a plane or on a line, or too far apart.");
   if (const auto lost = std::find(used.begin(), used.end(), 0); lost != used.end()) {
     const auto i = static_cast<std::size_t>(lost - used.begin());
-    refuse(fmt::format("{} at {} is too far from the others to belong to the body: raise alpha = {:g} or leave it out.", name(i),
-                       describe<D>(points.positions[i]), options.alpha));
+    refuse(fmt::format("{} at {} is too far from the others to belong to the body: raise alpha = {:g} or leave it out.",
+                       name(i), describe<D>(points.positions[i]), options.alpha));
   }
   if (!singular.empty())
-    refuse(fmt::format("the surface touches itself at {}, {}: with another alpha than {:g} more or less is left out there.", name(singular[0]),
-                       describe<D>(points.positions[singular[0]]), options.alpha));
+    refuse(fmt::format(
+        "the surface touches itself at {}, {}: with another alpha than {:g} more or less is left out there.",
+        name(singular[0]), describe<D>(points.positions[singular[0]]), options.alpha));
   if (!points.volumes.empty()) {
     double sum = 0.0;
     for (const double V : points.volumes) sum += V;
     sum *= std::pow(options.scale, D);
     if (std::abs(sum - volume) > options.volume_tolerance * volume)
-      refuse(fmt::format("the volumes of the points sum to {:.4g} m^{}, the body between them has {:.4g}: points must lie on its surface, too; "
-                         "alpha = {:g} closes gaps (volume_tolerance = {:g}).", sum, D, volume, options.alpha, options.volume_tolerance));
+      refuse(
+          fmt::format("the volumes of the points sum to {:.4g} m^{}, the body between them has {:.4g}: points must lie "
+                      "on its surface, too; alpha = {:g} closes gaps (volume_tolerance = {:g}).",
+                      sum, D, volume, options.alpha, options.volume_tolerance));
   }
   std::vector<std::size_t> tags(count);
   std::iota(tags.begin(), tags.end(), std::size_t{0});
-  return cloud_of_mesh<D>(std::move(points.positions), tags, std::move(cells), std::move(points.regions), {.scale = 1.0, .coincidence = options.coincidence},
-                          where, points.point_regions);
+  return cloud_of_mesh<D>(std::move(points.positions), tags, std::move(cells), std::move(points.regions),
+                          {.scale = 1.0, .coincidence = options.coincidence}, where, points.point_regions);
 }
 
 }  // namespace detail
 
-/// A cloud with cells from points alone. The points of the body, those of its surface among them, are joined by Delaunay's
-/// triangulation; what is larger than the spacing of the points allows is left out (an alpha shape: hollows and concave sides
-/// appear, edges of concave sides are rounded by about one spacing). The triangles and tetrahedra become cells as those of a mesh
-/// do, see read_gmsh: all points are particles, with others in the middle of edges, faces and simplices, about six (D = 2) or 27
-/// (D = 3) per point. The part of a simplex that is next to a point is in that point's region.
-/// Volumes, where they are given, tell the spacing, and their sum is compared with the volume of the cells.
-/// Throws ParameterError for the options; GeometryError for points that are no body: too few, not finite, coincident, in a plane,
-/// too far from the others, volumes that do not agree, or a surface that touches itself.
+/// A cloud with cells from points alone. The points of the body, those of its surface among them, are joined by
+/// Delaunay's triangulation; what is larger than the spacing of the points allows is left out (an alpha shape: hollows
+/// and concave sides appear, edges of concave sides are rounded by about one spacing). The triangles and tetrahedra
+/// become cells as those of a mesh do, see read_gmsh: all points are particles, with others in the middle of edges,
+/// faces and simplices, about six (D = 2) or 27 (D = 3) per point. The part of a simplex that is next to a point is in
+/// that point's region. Volumes, where they are given, tell the spacing, and their sum is compared with the volume of
+/// the cells. Throws ParameterError for the options; GeometryError for points that are no body: too few, not finite,
+/// coincident, in a plane, too far from the others, volumes that do not agree, or a surface that touches itself.
 template <int D>
   requires(D > 1)
 [[nodiscard]] PointCloud<D> cloud_of_points(Points<D> points, const PointsOptions& options = {}) {
-  return detail::cloud_of_points<D>(std::move(points), options, "cloud_of_points", [](std::size_t i) { return fmt::format("point {}", i); });
+  return detail::cloud_of_points<D>(std::move(points), options, "cloud_of_points",
+                                    [](std::size_t i) { return fmt::format("point {}", i); });
 }
 
 }  // namespace tactoid

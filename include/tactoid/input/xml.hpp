@@ -28,13 +28,14 @@ struct XmlElement {
     return nullptr;
   }
   [[nodiscard]] const XmlElement* child(std::string_view key) const {
-    const auto found = std::find_if(children.begin(), children.end(), [&](const XmlElement& e) { return e.name == key; });
+    const auto found =
+        std::find_if(children.begin(), children.end(), [&](const XmlElement& e) { return e.name == key; });
     return found == children.end() ? nullptr : &*found;
   }
 };
 
-/// Reads elements, attributes and texts, which is what VTK's files consist of, and one thing that is no XML: the raw bytes in
-/// <AppendedData>. What follows them is not read.
+/// Reads elements, attributes and texts, which is what VTK's files consist of, and one thing that is no XML: the raw
+/// bytes in <AppendedData>. What follows them is not read.
 class XmlScanner {
  public:
   /// `name` of the file in messages; the content must outlive the elements.
@@ -43,15 +44,19 @@ class XmlScanner {
   [[nodiscard]] XmlElement root() {
     if (content_.starts_with("\xEF\xBB\xBF")) at_ = 3;
     skip_remarks();
-    if (!content_.substr(at_).starts_with('<')) throw FileError(fmt::format("{} is no XML file: it does not begin with an element.", name_));
+    if (!content_.substr(at_).starts_with('<'))
+      throw FileError(fmt::format("{} is no XML file: it does not begin with an element.", name_));
     return element(0);
   }
 
-  [[noreturn]] void refuse(std::size_t line, std::string_view what) const { throw FileError(fmt::format("{}, line {}: {}", name_, line, what)); }
+  [[noreturn]] void refuse(std::size_t line, std::string_view what) const {
+    throw FileError(fmt::format("{}, line {}: {}", name_, line, what));
+  }
 
  private:
   [[nodiscard]] std::size_t line() {
-    line_ += static_cast<std::size_t>(std::count(content_.begin() + static_cast<std::ptrdiff_t>(counted_), content_.begin() + static_cast<std::ptrdiff_t>(at_), '\n'));
+    line_ += static_cast<std::size_t>(std::count(content_.begin() + static_cast<std::ptrdiff_t>(counted_),
+                                                 content_.begin() + static_cast<std::ptrdiff_t>(at_), '\n'));
     counted_ = at_;
     return line_;
   }
@@ -84,7 +89,8 @@ class XmlScanner {
     ++at_;
     e.name = word();
     if (e.name.empty()) refuse("the name of an element is expected after \"<\".");
-    for (skip_space(); at_ < content_.size() && content_[at_] != '>' && content_[at_] != '/'; skip_space()) e.attributes.push_back(attribute(e));
+    for (skip_space(); at_ < content_.size() && content_[at_] != '>' && content_[at_] != '/'; skip_space())
+      e.attributes.push_back(attribute(e));
     if (content_.substr(at_).starts_with("/>")) {
       at_ += 2;
       return e;
@@ -124,19 +130,23 @@ class XmlScanner {
   std::pair<std::string, std::string> attribute(const XmlElement& e) {
     std::string key(word());
     skip_space();
-    if (key.empty() || !content_.substr(at_).starts_with('=')) refuse(fmt::format("an attribute of <{}> is expected here, name=\"value\".", e.name));
+    if (key.empty() || !content_.substr(at_).starts_with('='))
+      refuse(fmt::format("an attribute of <{}> is expected here, name=\"value\".", e.name));
     ++at_;
     skip_space();
     const char quote = at_ < content_.size() ? content_[at_] : '\0';
     const std::size_t end = quote == '"' || quote == '\'' ? content_.find(quote, at_ + 1) : std::string_view::npos;
-    if (end == std::string_view::npos) refuse(fmt::format("the value of the attribute {} of <{}> is not in quotation marks.", key, e.name));
+    if (end == std::string_view::npos)
+      refuse(fmt::format("the value of the attribute {} of <{}> is not in quotation marks.", key, e.name));
     if (e.attribute(key) != nullptr) refuse(fmt::format("the attribute {} of <{}> is there twice.", key, e.name));
     const std::string_view raw = content_.substr(at_ + 1, end - at_ - 1);
     at_ = end + 1;
     std::string value;
     for (std::size_t k = 0; k < raw.size(); ++k) {
-      static constexpr std::array<std::pair<std::string_view, char>, 5> entities = {{{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&quot;", '"'}, {"&apos;", '\''}}};
-      const auto found = std::find_if(entities.begin(), entities.end(), [&](const auto& entity) { return raw.substr(k).starts_with(entity.first); });
+      static constexpr std::array<std::pair<std::string_view, char>, 5> entities = {
+          {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&quot;", '"'}, {"&apos;", '\''}}};
+      const auto found = std::find_if(entities.begin(), entities.end(),
+                                      [&](const auto& entity) { return raw.substr(k).starts_with(entity.first); });
       value += found == entities.end() ? raw[k] : found->second;
       if (found != entities.end()) k += found->first.size() - 1;
     }
