@@ -284,8 +284,9 @@ class MshReader {
 ///
 /// The background cells are tensor products, so a triangle becomes three quadrilaterals and a tetrahedron four hexahedra: the
 /// spacing of the particles is about half an edge of the mesh, and a support of 1.3 times the longest edge is enough.
-/// Throws FileError for a file that cannot be read or is damaged (with line or byte), GeometryError for a mesh that is no body:
-/// inverted, flat or repeated cells, coincident nodes, positions that are not finite; ParameterError for the options.
+/// Throws FileError for a file that cannot be read or is damaged (with line or byte), GeometryError for a mesh that is no
+/// body: inverted, flat, repeated or overlapping cells, coincident nodes, positions that are not finite, a surface that
+/// touches itself in an edge or a point; ParameterError for the options.
 template <int D>
 [[nodiscard]] PointCloud<D> read_gmsh(const std::filesystem::path& path, const MeshOptions& options = {}) {
   return detail::MshReader<D>(path).read(options);

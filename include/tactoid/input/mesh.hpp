@@ -210,7 +210,7 @@ template <int D>
   options.validate();
   constexpr std::size_t corners = std::size_t{1} << D, simplex = static_cast<std::size_t>(D) + 1;
   const auto refuse = [&](std::string_view what) { throw GeometryError(fmt::format("{}: {}", where, what)); };
-  if (cells.empty()) refuse(fmt::format("there are no cells of {} dimensions.", D));
+  if (cells.empty()) refuse(fmt::format("there are no cells of {} dimensions; points without cells are read from a table (read_csv).", D));
   for (Point<D>& X : positions) X *= options.scale;
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (!positions[i].allFinite()) refuse(fmt::format("node {} has a position that is not finite.", tags[i]));
