@@ -229,8 +229,9 @@ class AlphaShape {
       for (const Index v : simplices_[s]) users_[v].push_back(s);
       if (quality(simplices_[s]) < sliver) open.push_back(s);
     }
-    // Every change makes the worst of its tetrahedra better: there is an end.
-    for (std::size_t n = 0; n < open.size(); ++n) {
+    // Every change makes the worst of its tetrahedra better: there is an end, and it is not far where slivers are few.
+    const std::size_t enough = 50 * open.size();
+    for (std::size_t n = 0; n < open.size() && n < enough; ++n) {
       if (!alive_[open[n]]) continue;
       Change best;
       for (std::size_t a = 0; a < 4; ++a) {
@@ -258,7 +259,7 @@ class AlphaShape {
   void propose(Change change, Change& best) const {
     double before = std::numeric_limits<double>::infinity();
     for (const std::size_t s : change.gone) before = std::min(before, quality(simplices_[s]));
-    if (change.quality > before && change.quality > best.quality) best = std::move(change);
+    if (change.quality > before + 1e-4 && change.quality > best.quality) best = std::move(change);
   }
 
   /// The two tetrahedra on both sides of a face become three around the edge between their apices.
