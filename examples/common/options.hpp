@@ -75,7 +75,7 @@ class Options {
     entry.type = "INTEGER";
     entry.shown = fmt::format("{}", *value);
     entry.read = [value, range](std::string_view text, std::string_view where) {
-      std::string_view digits = detail::trimmed(text);
+      std::string_view digits = trimmed(text);
       if (digits.empty()) throw ParameterError(fmt::format("{}: the value is empty; a whole number is needed.", where));
       if (digits.starts_with('+')) digits.remove_prefix(1);
       Integer number{};
@@ -270,7 +270,7 @@ class Options {
   }
 
   static std::string checked_text(std::string_view text, std::string_view where) {
-    if (detail::trimmed(text).empty())
+    if (trimmed(text).empty())
       throw ParameterError(fmt::format("{}: the value is empty; a text is needed.", where));
     if (text.find('\0') != std::string_view::npos)
       throw ParameterError(fmt::format("{}: {} contains a zero byte.", where, in_quotes(text)));
