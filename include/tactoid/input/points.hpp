@@ -32,6 +32,7 @@ struct PointsOptions {
   /// Where volumes are given: largest difference of their sum from the volume of the cells, over the latter; > 0.
   double volume_tolerance = 0.1;
 
+  /// Throws ParameterError for a value out of its range.
   void validate() const {
     require_positive("PointsOptions.scale", scale, "m");
     require_positive("PointsOptions.alpha", alpha);
@@ -46,7 +47,7 @@ struct Points {
   std::vector<Point<D>> positions{};         ///< in units of length of the file
   std::vector<double> volumes{};             ///< in its units³ (units²); empty where none are given
   std::vector<std::size_t> point_regions{};  ///< indices into `regions`; empty: all 0
-  std::vector<std::string> regions = {"body"};
+  std::vector<std::string> regions = {"body"};  ///< their names
 };
 
 namespace detail {
