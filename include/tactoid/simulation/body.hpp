@@ -327,7 +327,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         share(volumes_, table_.point_values, q, table_.volume[q]);
       }
     });
-    table_.mass_shares = {};
+    table_.mass_shares = std::vector<double>();  // an assignment of {} would keep the memory
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (!(masses_[i] > 0.0))
         throw GeometryError(fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.",
