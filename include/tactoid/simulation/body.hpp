@@ -199,6 +199,13 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return largest;
   }
 
+  /// Largest volume ratio J over the points of a body with a director. Known after add_internal_forces.
+  [[nodiscard]] double largest_volume_ratio() const
+    requires has_director
+  {
+    return *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
+  }
+
   // --- views -------------------------------------------------------------------------------------------------
   /// Cauchy stress and volume ratio at all quadrature points, without advancing any history.
   [[nodiscard]] std::vector<PointSample> sample_points() {
