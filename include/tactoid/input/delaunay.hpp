@@ -20,7 +20,7 @@ namespace detail {
 __extension__ using WideInteger = __int128;
 
 template <std::size_t N>
-[[nodiscard]] WideInteger determinant(const std::array<std::array<WideInteger, N>, N>& m) {
+[[nodiscard]] WideInteger wide_determinant(const std::array<std::array<WideInteger, N>, N>& m) {
   if constexpr (N == 1) {
     return m[0][0];
   } else {
@@ -106,7 +106,7 @@ class Delaunay {
     std::array<std::array<WideInteger, static_cast<std::size_t>(D)>, static_cast<std::size_t>(D)> m;
     for (std::size_t i = 0; i + 1 < vertices; ++i)
       for (std::size_t k = 0; k + 1 < vertices; ++k) m[i][k] = points_[s[i + 1]][k] - points_[s[0]][k];
-    return determinant(m);
+    return wide_determinant(m);
   }
   [[nodiscard]] WideInteger orientation(Simplex s, std::size_t place, Index p) const {
     s[place] = p;
@@ -123,7 +123,7 @@ class Delaunay {
       else
         m[i][3] = 32 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - 6 * d[0] * d[1] - 4 * d[1] * d[2] - 2 * d[0] * d[2];
     }
-    const WideInteger sign = determinant(m);
+    const WideInteger sign = wide_determinant(m);
     return D % 2 == 0 ? sign > 0 : sign < 0;
   }
 
