@@ -32,7 +32,7 @@ template <std::size_t N>
           for (std::size_t j = 0; j + 1 < N; ++j) minor[k][j] = m[i][j];
           ++k;
         }
-      const WideInteger part = m[row][N - 1] * determinant<N - 1>(minor);
+      const WideInteger part = m[row][N - 1] * wide_determinant<N - 1>(minor);
       sum += (row + N) % 2 == 1 ? part : -part;
     }
     return sum;
