@@ -13,5 +13,6 @@
 #include <tactoid/contact/rigid_surface.hpp>
 #include <tactoid/contact/surface.hpp>
 #include <tactoid/contact/surface_contact.hpp>
+#include <tactoid/contact/tethered_bonds.hpp>
 #include <tactoid/contact/tracking.hpp>
 #include <tactoid/contact/van_der_waals.hpp>

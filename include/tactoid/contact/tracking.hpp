@@ -103,6 +103,37 @@ class ClosestPointTracker {
     });
   }
 
+  /// Local minimum of the distance from q (m) over a facet and its neighbours, from facet `f` downhill.
+  static ClosestPoint<D> walk(const FacetSurface<D>& surface, Index f, std::span<const Vector4> x, const Vector3& q) {
+    FacetProjection<D> here = project_on_facet(surface, f, x, q);
+    for (;;) {
+      Index next = f;
+      FacetProjection<D> there = here;
+      const auto look_at = [&](Index g) {
+        if (g == f || g == no_facet) return;
+        const FacetProjection<D> other = project_on_facet(surface, g, x, q);
+        if (other.squared_distance < there.squared_distance) {
+          there = other;
+          next = g;
+        }
+      };
+      const auto& corners = surface.facets[f];
+      if (here.interior()) {
+        for (std::size_t k = 0; k < FacetSurface<D>::sides; ++k)
+          if (rises_toward(surface, f, k, here, x, q)) look_at(surface.neighbors_of(f)[k]);
+      } else if (here.corner >= 0) {
+        for (const Index g : surface.facets_of(corners[static_cast<std::size_t>(here.corner)])) look_at(g);
+      } else {
+        for (const std::size_t end : surface.side_corners(static_cast<std::size_t>(here.side)))
+          for (const Index g : surface.facets_of(corners[end])) look_at(g);
+      }
+      if (next == f) break;
+      f = next;
+      here = there;
+    }
+    return complete(surface, f, here, x, q);
+  }
+
   /// One entry per query point.
   [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return closest_; }
 
@@ -154,37 +185,6 @@ class ClosestPointTracker {
       return above * above + beside * beside;
     }
   };
-
-  /// Local minimum of the distance over a facet and its neighbours, from facet `f` downhill.
-  static ClosestPoint<D> walk(const FacetSurface<D>& surface, Index f, std::span<const Vector4> x, const Vector3& q) {
-    FacetProjection<D> here = project_on_facet(surface, f, x, q);
-    for (;;) {
-      Index next = f;
-      FacetProjection<D> there = here;
-      const auto look_at = [&](Index g) {
-        if (g == f || g == no_facet) return;
-        const FacetProjection<D> other = project_on_facet(surface, g, x, q);
-        if (other.squared_distance < there.squared_distance) {
-          there = other;
-          next = g;
-        }
-      };
-      const auto& corners = surface.facets[f];
-      if (here.interior()) {
-        for (std::size_t k = 0; k < FacetSurface<D>::sides; ++k)
-          if (rises_toward(surface, f, k, here, x, q)) look_at(surface.neighbors_of(f)[k]);
-      } else if (here.corner >= 0) {
-        for (const Index g : surface.facets_of(corners[static_cast<std::size_t>(here.corner)])) look_at(g);
-      } else {
-        for (const std::size_t end : surface.side_corners(static_cast<std::size_t>(here.side)))
-          for (const Index g : surface.facets_of(corners[end])) look_at(g);
-      }
-      if (next == f) break;
-      f = next;
-      here = there;
-    }
-    return complete(surface, f, here, x, q);
-  }
 
   /// Whether the facet behind side `k` can be nearer to q than the point p inside facet `f`: it must bend toward q
   /// so much that it reaches into the sphere around q through p. A plane that leaves the tangent plane of p at the

@@ -1,0 +1,317 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactoid/contact/contact.hpp>
+#include <tactoid/contact/per_dimension.hpp>
+#include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/tracking.hpp>
+#include <tactoid/core/errors.hpp>
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/core/random.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
+
+namespace tactoid {
+
+/// How fast a bond forms and breaks. Under a tension F ≥ 0 it breaks at the rate
+///   k_off(F) = k_s e^{F/F_s} + k_c e^{−F/F_c} ,
+/// slip alone for k_c = 0 (G. I. Bell, Science 1978, 200, 618), else catch and slip: the lifetime first grows with the force
+/// (Y. V. Pereverzev et al., Biophys. J. 2005, 89, 1446). Compressed bonds break as unloaded ones.
+struct BondKinetics {
+  double on_rate = 1e6;        ///< k_on of a free receptor within reach, 1/s; >= 0
+  double off_rate = 1e5;       ///< k_s, 1/s; >= 0
+  double slip_force = 10e-12;  ///< F_s, N; > 0, may be infinite: force does not matter
+  double catch_rate = 0.0;     ///< k_c, 1/s; >= 0
+  double catch_force = 5e-12;  ///< F_c, N; > 0
+
+  /// k_off at a tension, 1/s; finite for every force.
+  [[nodiscard]] double detachment_rate(double tension) const {
+    const double f = std::max(tension, 0.0);
+    return off_rate * std::exp(std::min(f / slip_force, 300.0)) + catch_rate * std::exp(-f / catch_force);
+  }
+
+  /// Throws ParameterError for a value out of its range.
+  void validate() const {
+    require_non_negative("BondKinetics.on_rate", on_rate, "1/s");
+    require_non_negative("BondKinetics.off_rate", off_rate, "1/s");
+    if (!(slip_force > 0.0)) reject("BondKinetics.slip_force", slip_force, "N", "positive (infinite: force does not matter)");
+    require_non_negative("BondKinetics.catch_rate", catch_rate, "1/s");
+    require_positive("BondKinetics.catch_force", catch_force, "N");
+  }
+};
+
+struct TetheredBonds;
+
+/// The receptors of a body's facets, which bind to material points of another body's surface: what TetheredBonds keeps.
+///
+/// A *site* is a place on A's facets (a quadrature point) with room for `capacity` bonds: all receptors of the quadrature point
+/// in the mean field, a single one where bonds are stochastic. It knows how many bonds hold, where they are anchored, and
+/// what is stored in them.
+template <int D>
+class TetherSites {
+ public:
+  /// Builds surfaces and sites; no bond holds.
+  void initialize(const TetheredBonds& law, const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
+                  const ParticleFields& b);
+  /// Breaks and forms bonds over the time since the last call, and adds the forces of those that hold.
+  TermEnergy apply(const TetheredBonds& law, const ParticleFields& a, const ParticleFields& b, double time);
+  /// Bound of ω² if every receptor within reach, and every one that is bound, were a spring; 1/s².
+  [[nodiscard]] double stiffness_rate(const TetheredBonds& law, const ParticleFields& a, const ParticleFields& b) const;
+
+  [[nodiscard]] std::size_t size() const { return capacity_.size(); }                  ///< number of sites
+  [[nodiscard]] std::span<const double> capacity() const { return capacity_; }         ///< receptors per site
+  [[nodiscard]] std::span<const double> bound() const { return bound_; }               ///< bonds that hold, per site
+  [[nodiscard]] std::span<const Vector4> extension() const { return extension_; }      ///< from anchor to site, m; 0 where nothing is bound
+  [[nodiscard]] std::span<const double> stored() const { return stored_; }             ///< energy of the bonds of each site, J
+
+  /// What a checkpoint keeps.
+  template <class Archive>
+  void state(Archive& archive) {
+    using Place = Eigen::Matrix<double, D - 1, 1>;
+    std::vector<Place> place(anchor_.size());
+    for (std::size_t s = 0; s < place.size(); ++s) place[s] = Eigen::Map<const Place>(anchor_[s].data());
+    archive.part("tracker", tracker_);
+    archive("bound", bound_);
+    archive("stored", stored_);
+    archive("potential", potential_);
+    archive("anchor_facet", anchor_facet_);
+    archive("anchor", place);
+    archive("last_time", last_time_);
+    archive("calls", calls_);
+    for (std::size_t s = 0; s < place.size(); ++s) Eigen::Map<Place>(anchor_[s].data()) = place[s];
+  }
+
+ private:
+  using Local = typename FacetSurface<D>::Local;
+
+  /// Positions of the quadrature points of A, and B's nearest points.
+  void locate(const ParticleFields& a, const ParticleFields& b, double reach) {
+    for (std::size_t q = 0; q < points_.size(); ++q)
+      points_[q] = slave_.interpolate(quadrature_.facet_of(q), quadrature_.point(q).local, a.position);
+    tracker_.update(master_, points_, b.position, reach);
+  }
+
+  FacetSurface<D> slave_, master_;
+  FacetQuadrature<D> quadrature_;
+  ClosestPointTracker<D> tracker_;
+  Field points_;                       // of the quadrature
+  std::vector<Index> point_of_;        // per site: its quadrature point
+  std::vector<double> capacity_;       // receptors
+  std::vector<double> bound_;          // bonds that hold
+  std::vector<double> stored_;         // energy of the bonds, J
+  std::vector<double> potential_;      // ½κ(|s| − ℓ)² of a bond of the mean extension s at the last call, J
+  std::vector<Index> anchor_facet_;    // of B, of the bonds that hold
+  std::vector<Local> anchor_;          // place on that facet
+  Field extension_, force_;            // per site, from anchor to site, m; on A, N
+  std::vector<double> dissipated_, supplied_;  // in the last step, J
+  double last_time_ = 0.0;
+  std::uint64_t calls_ = 0;  // numbers the steps for the random numbers
+};
+
+/// Bonds that hold where they formed: a Contact in which the receptors of A's surface bind to *material points* of B's, so that
+/// bonds resist sliding as well as pulling off. (The law of a gap, such as LigandReceptor, lets surfaces slide freely.)
+///
+/// A receptor whose nearest point of B is closer than `capture_distance` binds to that point at the rate k_on, as a spring of
+/// stiffness κ and rest length ℓ between the two material points. It pulls both along the line between them: momentum and
+/// angular momentum are conserved to round-off. It breaks at the rate k_off of its tension (BondKinetics).
+///
+/// - *Mean field* (default): the receptors of a quadrature point share one extension, the mean of their own; a bond that forms
+///   moves the mean anchor. Per quadrature point dn/dt = k_on (N − n) − k_off n, solved exactly for the rates of a step. The
+///   mean force is exact for ℓ = 0 and rates that do not depend on the force; else bonds differ from their mean, and that is
+///   neglected (stochastic bonds show by how much).
+/// - *Stochastic*: every receptor binds and breaks by itself, by numbers that are drawn by seed, receptor and step: the same
+///   for any number of threads.
+///
+/// Energy: what bonds store follows the work that is done on them, the spread of their extensions included. What is in bonds
+/// that break is dissipated; what bonds hold as they form comes from outside (external power). Rates times the step should be
+/// small: kinetics are first order in the step, and so is the balance of energy in what bonds take in and lose.
+struct TetheredBonds {
+  double density = 1e14;             ///< receptors per reference area of A, 1/m² (plane: 1/m); > 0
+  double stiffness = 1e-3;           ///< κ of a bond, N/m; >= 0
+  double rest_length = 0.0;          ///< ℓ, m; >= 0
+  double capture_distance = 30e-9;   ///< gap below which bonds form, m; > 0
+  BondKinetics kinetics{};           ///< rates
+  bool stochastic = false;           ///< every bond by itself
+  std::uint64_t seed = 1;            ///< of the stochastic bonds
+  int points_per_direction = 2;      ///< quadrature points along each side of a facet of A, 1 to 4
+  PerDimension<TetherSites> sites{};  ///< set by initialize()
+
+  /// Throws ParameterError for a value out of its range.
+  void validate() const {
+    require_positive("TetheredBonds.density", density, "1/m^2");
+    require_non_negative("TetheredBonds.stiffness", stiffness, "N/m");
+    require_non_negative("TetheredBonds.rest_length", rest_length, "m");
+    require_positive("TetheredBonds.capture_distance", capture_distance, "m");
+    kinetics.validate();
+  }
+
+  /// Tension of a bond of length r, N; negative where it is compressed.
+  [[nodiscard]] double tension(double r) const { return stiffness * (r - rest_length); }
+  /// Energy of a bond of length r, J.
+  [[nodiscard]] double potential(double r) const { return 0.5 * stiffness * (r - rest_length) * (r - rest_length); }
+
+  /// Throws ParameterError, and GeometryError for clouds without facets.
+  template <int D>
+    requires(D >= 2)
+  void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b, const ParticleFields& b) {
+    validate();
+    sites.emplace<D>().initialize(*this, cloud_a, a, cloud_b, b);
+  }
+  /// Forces of the bonds at the present positions, after the kinetics of the time since the last call.
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time) {
+    return sites.visit([&](auto& s) { return s.apply(*this, a, b, time); });
+  }
+  /// Bound of ω², 1/s².
+  [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
+    return sites.visit([&](const auto& s) { return s.stiffness_rate(*this, a, b); });
+  }
+  /// Bonds that hold.
+  [[nodiscard]] double bonds() const {
+    return sites.visit([](const auto& s) {
+      double sum = 0.0;
+      for (const double n : s.bound()) sum += n;
+      return sum;
+    });
+  }
+  /// What a checkpoint keeps.
+  template <class Archive>
+  void state(Archive& archive) { archive.part("sites", sites); }
+};
+
+template <int D>
+void TetherSites<D>::initialize(const TetheredBonds& law, const PointCloud<D>& cloud_a, const ParticleFields& a,
+                                const PointCloud<D>& cloud_b, const ParticleFields& b) {
+  slave_ = FacetSurface<D>(cloud_a);
+  master_ = FacetSurface<D>(cloud_b);
+  quadrature_ = FacetQuadrature<D>(slave_, a.reference, law.points_per_direction);
+  points_.resize(quadrature_.size());
+  Random random(law.seed);
+  for (std::size_t q = 0; q < quadrature_.size(); ++q) {
+    const double receptors = law.density * quadrature_.area[q];
+    if (!law.stochastic) {
+      point_of_.push_back(static_cast<Index>(q));
+      capacity_.push_back(receptors);
+      continue;
+    }
+    const auto whole = static_cast<std::size_t>(receptors + random.uniform());  // the right number on average
+    point_of_.insert(point_of_.end(), whole, static_cast<Index>(q));
+    capacity_.insert(capacity_.end(), whole, 1.0);
+  }
+  const std::size_t n = size();
+  bound_.assign(n, 0.0);
+  stored_ = potential_ = dissipated_ = supplied_ = bound_;
+  anchor_facet_.assign(n, 0);
+  anchor_.assign(n, Local{});
+  extension_.assign(n, Vector4::Zero());
+  force_ = extension_;
+  locate(a, b, law.capture_distance);
+}
+
+template <int D>
+TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields& a, const ParticleFields& b, double time) {
+  locate(a, b, law.capture_distance);
+  const double step = std::max(0.0, time - last_time_);  // after a step that broke down, time has gone back
+  last_time_ = time;
+  const auto closest = tracker_.closest();
+  const auto extension = [&](std::size_t s, const Vector4& at) {
+    return Vector4(at - master_.interpolate(anchor_facet_[s], anchor_[s], b.position));
+  };
+  parallel_for(size(), [&](std::size_t s) {
+    const Vector4 at = points_[point_of_[s]];
+    const ClosestPoint<D>& nearest = closest[point_of_[s]];
+    double& n = bound_[s];
+    dissipated_[s] = supplied_[s] = 0.0;
+    if (!(n > 0.0) && !(nearest.gap < law.capture_distance)) return;
+    double off = law.kinetics.detachment_rate(0.0);
+    if (n > 0.0) {  // the motion of the step has done work on the bonds
+      const double r = extension(s, at).norm(), now = law.potential(r);
+      stored_[s] += n * (now - potential_[s]);
+      off = law.kinetics.detachment_rate(law.tension(r));
+    }
+    const double on = nearest.gap < law.capture_distance ? law.kinetics.on_rate : 0.0, free = capacity_[s] - n;
+    double left = n * std::exp(-off * step), joined = 0.0;
+    if (law.stochastic) {
+      const double drawn = Random(law.seed + 0x9e3779b97f4a7c15ULL * (calls_ * size() + s + 1)).uniform();
+      left = n > 0.0 && drawn < std::exp(-off * step) ? 1.0 : 0.0;
+      joined = free > 0.0 && drawn < -std::expm1(-on * step) ? 1.0 : 0.0;
+    } else if (on > 0.0) {
+      const double rest = capacity_[s] * on / (on + off);
+      joined = std::max(0.0, rest + (n - rest) * std::exp(-(on + off) * step) - left);
+    }
+    if (n > 0.0) dissipated_[s] = stored_[s] * (n - left) / n;
+    stored_[s] -= dissipated_[s];
+    supplied_[s] = joined * law.potential((at.template head<3>() - nearest.point).norm());
+    stored_[s] += supplied_[s];
+    if (joined > 0.0) {
+      if (left > 0.0) {
+        const Vector4 anchor = at - extension(s, at);
+        const Vector3 mean = (left * anchor.template head<3>() + joined * nearest.point) / (left + joined);
+        const ClosestPoint<D> place = ClosestPointTracker<D>::walk(master_, anchor_facet_[s], b.position, mean);
+        anchor_facet_[s] = place.facet;
+        anchor_[s] = place.local;
+      } else {
+        anchor_facet_[s] = nearest.facet;
+        anchor_[s] = nearest.local;
+      }
+    }
+    n = left + joined;
+    extension_[s] = force_[s] = Vector4::Zero();
+    if (!(n > 0.0)) return;
+    extension_[s] = extension(s, at);
+    const double r = extension_[s].norm();
+    potential_[s] = law.potential(r);
+    if (r > 0.0) force_[s] = (-n * law.tension(r) / r) * extension_[s];
+  });
+  ++calls_;
+  TermEnergy total;
+  for (std::size_t s = 0; s < size(); ++s) {
+    total.potential += stored_[s];
+    if (step > 0.0) {
+      total.dissipated_power += dissipated_[s] / step;
+      total.external_power += supplied_[s] / step;
+    }
+    if (!(bound_[s] > 0.0)) continue;
+    const std::size_t q = point_of_[s];
+    const auto& from = slave_.facets[quadrature_.facet_of(q)];
+    const auto& onto = master_.facets[anchor_facet_[s]];
+    const auto& shape = quadrature_.point(q).shape;
+    const auto anchored = FacetSurface<D>::shape(anchor_[s]);
+    for (std::size_t c = 0; c < from.size(); ++c) {
+      a.force[from[c]] += shape[c] * force_[s];
+      b.force[onto[c]] -= anchored[c] * force_[s];
+    }
+  }
+  return total;
+}
+
+template <int D>
+double TetherSites<D>::stiffness_rate(const TetheredBonds& law, const ParticleFields& a, const ParticleFields& b) const {
+  std::vector<double> on_a(a.mass.size(), 0.0), on_b(b.mass.size(), 0.0);
+  const auto closest = tracker_.closest();
+  for (std::size_t s = 0; s < size(); ++s) {
+    const std::size_t q = point_of_[s];
+    const bool near = closest[q].gap < 2.0 * law.capture_distance;
+    if (!near && !(bound_[s] > 0.0)) continue;
+    const double k = 2.0 * capacity_[s] * law.stiffness;
+    const auto& from = slave_.facets[quadrature_.facet_of(q)];
+    const auto& onto = master_.facets[bound_[s] > 0.0 ? anchor_facet_[s] : closest[q].facet];
+    const auto& shape = quadrature_.point(q).shape;
+    const auto anchored = FacetSurface<D>::shape(bound_[s] > 0.0 ? anchor_[s] : closest[q].local);
+    for (std::size_t c = 0; c < from.size(); ++c) {
+      on_a[from[c]] += k * shape[c];
+      on_b[onto[c]] += k * anchored[c];
+    }
+  }
+  double rate = 0.0;
+  for (std::size_t i = 0; i < on_a.size(); ++i) rate = std::max(rate, on_a[i] / a.mass[i]);
+  for (std::size_t i = 0; i < on_b.size(); ++i) rate = std::max(rate, on_b[i] / b.mass[i]);
+  return rate;
+}
+
+static_assert(Contact<TetheredBonds, 2> && Contact<TetheredBonds, 3>);
+
+}  // namespace tactoid
