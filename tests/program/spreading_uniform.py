@@ -13,11 +13,12 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import xml.etree.ElementTree as xml
 
 import h5py
+
+import continued_run
 
 PROGRAM = ""
 COLUMNS = (
@@ -268,27 +269,12 @@ class Restart(Case):
     RUN = ["--gap", "1nm", "--resolution", "0.4", "--end-time", "0.5us", "--frames", "5", "--samples", "50", "--preset", "elastic"]
 
     def interrupt(self, sent, lines, *arguments):
-        """A run that is ended by a signal as soon as its history has so many lines."""
-        with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              env=dict(os.environ, OMP_WAIT_POLICY="passive", LC_ALL="C")) as process:
-            history = self.folder / arguments[-1] / "history.csv"
-            while not history.exists() or history.read_bytes().count(b"\n") < lines:
-                self.assertIsNone(process.poll(), "the run ended before it could be interrupted")
-                time.sleep(0.005)
-            process.send_signal(sent)
-            error = process.communicate(timeout=60)[1]
-        self.assertEqual(process.returncode, 128 + sent, error)
-        self.assertEqual(error, f"spreading_uniform: ended by {sent.name}.\n")
-        summary = json.loads((self.folder / arguments[-1] / "summary.json").read_text())
-        self.assertFalse(summary["completed"])
+        continued_run.interrupt(self, PROGRAM, sent, lines, *arguments)
+        self.assertFalse(json.loads((self.folder / arguments[-1] / "summary.json").read_text())["completed"])
         self.check_frames(self.folder / arguments[-1])
 
     def assert_same(self, one, two):
-        for name in ("history.csv", "front.csv", "fields.pvd"):
-            self.assertEqual((self.folder / one / name).read_bytes(), (self.folder / two / name).read_bytes(), name)
-        self.assertEqual(set(os.listdir(self.folder / one / "fields")), set(os.listdir(self.folder / two / "fields")))
-        for name in os.listdir(self.folder / one / "fields"):
-            self.assertEqual((self.folder / one / "fields" / name).read_bytes(), (self.folder / two / "fields" / name).read_bytes(), name)
+        continued_run.assert_same(self, one, two, "history.csv", "front.csv")
 
     def test_a_run_that_is_ended_twice_and_continued_is_the_whole_run(self):
         self.succeed(*self.RUN, "--threads", "1", "--out", "whole")
