@@ -15,6 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include <tactoid/core/errors.hpp>
@@ -23,7 +26,7 @@
 namespace tactoid {
 
 /// A table of numbers over time (.csv): a line of column names, then one line per call, each on the disc before the
-/// call returns. Numbers are written in the shortest form that reads back as the same double.
+/// call returns, or, where the disc is full, not at all. Numbers are written in the shortest form that reads back as the same double.
 class HistoryWriter {
  public:
   /// Begins the file anew; or goes on with it, if it is there, behind the last line whose value in the column `key` (the first one
@@ -49,6 +52,7 @@ class HistoryWriter {
     if (keep_until) write_file(path_, head + '\n' + lines_until(head, at - columns_.begin(), *keep_until));
     file_.reset(std::fopen(path_.c_str(), keep_until ? "ab" : "wb"));
     if (!file_) detail::fail_file("write", path_, errno);
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // nothing of a line that failed waits to be written later
     if (!keep_until) put(head + '\n');
   }
 
@@ -87,8 +91,15 @@ class HistoryWriter {
     return kept;
   }
   void put(const std::string& line) {
-    if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size() || std::fflush(file_.get()) != 0)
-      detail::fail_file("write", path_, errno);
+    const int descriptor = ::fileno(file_.get());
+    struct ::stat before {};
+    const bool known = ::fstat(descriptor, &before) == 0 && S_ISREG(before.st_mode);
+    if (std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size()) return;
+    const int error = errno;
+    if (known) {
+      [[maybe_unused]] const int cut = ::ftruncate(descriptor, before.st_size);  // should it fail, too, a part of a line stays
+    }
+    detail::fail_file("write", path_, error);
   }
 
   struct Close {
