@@ -76,11 +76,16 @@ class Bar(unittest.TestCase):
         self.assertEqual((self.folder / "parts" / "history.csv").read_bytes().count(b"\n"), 1)
         continued_run.interrupt(self, PROGRAM, signal.SIGINT, 100, "--restart", "parts/checkpoint.h5", "--out", "parts")
         self.assertNotIn("loss", self.summary("parts"))
+        shutil.copy(self.folder / "parts" / "checkpoint.h5", self.folder / "middle.h5")
         said = self.run_program("--restart", "parts/checkpoint.h5", "--threads", "2", "--out", "parts").stdout
         self.assertRegex(said, r"going on from t = \S+ s, step \d+")
         continued_run.assert_same(self, "whole", "parts", "history.csv")
         parts = self.summary("parts")
         self.assertEqual({**whole, "threads": 2}, parts)
+        # From the middle of the recorded cycle again, over the lines and frames that are there by now.
+        self.run_program("--restart", "middle.h5", "--threads", "2", "--out", "parts")
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        self.assertEqual(self.summary("parts"), parts)
         # A finished run goes on to the same end.
         self.run_program("--restart", "parts/checkpoint.h5", "--threads", "2", "--out", "parts")
         continued_run.assert_same(self, "whole", "parts", "history.csv")

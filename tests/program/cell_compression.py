@@ -86,6 +86,7 @@ class Compression(unittest.TestCase):
         lines = (self.folder / "whole" / "history.csv").read_bytes().count(b"\n")
         small = [*SMALL, "--reduction", "0.3", *run]
         continued_run.interrupt(self, PROGRAM, signal.SIGTERM, lines // 4, *small, "--out", "parts")
+        shutil.copy(self.folder / "parts" / "checkpoint.h5", self.folder / "early.h5")
         restart = ["--restart", "parts/checkpoint.h5", "--threads"]
         continued_run.interrupt(self, PROGRAM, signal.SIGINT, lines // 2, *restart, "2", "--out", "parts")
         result = subprocess.run([PROGRAM, *restart, "1", "--out", "parts"], cwd=self.folder, capture_output=True, text=True, timeout=300,
@@ -97,6 +98,10 @@ class Compression(unittest.TestCase):
         for summary in summaries:
             del summary["wall_seconds"]
         self.assertEqual(*summaries)
+        # From the first place again, over the lines and frames that are there by now.
+        subprocess.run([PROGRAM, "--restart", "early.h5", "--threads", "2", "--out", "parts"], cwd=self.folder, check=True,
+                       stdout=subprocess.DEVNULL, timeout=300, env=continued_run.ENVIRONMENT)
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
         # The plates move as they did.
         for option, value in refused:
             result = subprocess.run([PROGRAM, *restart, "1", f"--{option}", value, "--out", "new"], cwd=self.folder, capture_output=True,

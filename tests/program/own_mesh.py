@@ -64,8 +64,12 @@ class OwnMesh(unittest.TestCase):
         fall = ["--mesh", "body.msh", "--scale", "5um", "--speed", "0.05m/s", "--end-time", "12us", "--frames", "6"]
         self.run_program(block(8), *fall[2:], "--out", "whole")
         continued_run.interrupt(self, PROGRAM, signal.SIGTERM, 40, *fall, "--threads", "1", "--out", "parts")
+        shutil.copy(self.folder / "parts" / "checkpoint.h5", self.folder / "early.h5")
         continued_run.interrupt(self, PROGRAM, signal.SIGINT, 90, "--restart", "parts/checkpoint.h5", "--threads", "1", "--out", "parts")
         self.run_program(block(8), "--restart", "parts/checkpoint.h5", "--threads", "2", "--out", "parts")
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        # From the first place again, over the lines and frames that are there by now.
+        self.run_program(block(8), "--restart", "early.h5", "--threads", "1", "--out", "parts")
         continued_run.assert_same(self, "whole", "parts", "history.csv")
         result = self.run_program(block(8), "--restart", "parts/checkpoint.h5", "--end-time", "1us", "--out", "new", status=2)
         self.assertEqual(result.stderr, "own_mesh: --end-time = 1e-06 s is not allowed: the checkpoint is at 1.2e-05 s.\n")
