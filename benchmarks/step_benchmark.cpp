@@ -1,5 +1,6 @@
 // One complete step: of the cell on its substrate at the paper's size, everything on; and of an elastic block in free
-// flight after a bending velocity, with and without stabilisation. The argument is the number of threads.
+// flight after a bending velocity, with and without stabilisation. Beside them the yardstick: the bare sweep over the table
+// of the same block. Arguments: particles along an edge of the block, threads.
 #include "report.hpp"
 #include <common/spreading_case.hpp>
 
@@ -31,27 +32,72 @@ void cell_on_substrate(benchmark::State& state) {
                                          static_cast<double>(cell.size() + substrate.size());
 }
 
-/// 27³ particles with about 50 neighbours each.
-void elastic_block(benchmark::State& state, double stabilization) {
-  set_thread_count(static_cast<int>(state.range(0)));
-  const double edge = 1e-2;
-  Body block{"block", box({.size = {edge, edge, edge}, .cells = {26, 26, 26}}), Rkpm<3>{.support = 2.35},
-             NodalCentroids{.solid_ratio = stabilization},
-             Materials{Region{"body", NeoHookean::from_young(1e6, 0.3)}}};
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    const double z = block.cloud().positions[i][2] / edge;
-    block.velocity[i][0] = 0.1 * z * z;
+/// A cube of `edge`³ particles with about 50 neighbours each.
+auto block(std::int64_t edge, double stabilization) {
+  const int cells = static_cast<int>(edge) - 1;
+  const double size = 1e-2;
+  Body body{"block", box({.size = {size, size, size}, .cells = {cells, cells, cells}}), Rkpm<3>{.support = 2.35},
+            NodalCentroids{.solid_ratio = stabilization}, Materials{Region{"body", NeoHookean::from_young(1e6, 0.3)}}};
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const double z = body.cloud().positions[i][2] / size;
+    body.velocity[i][0] = 0.1 * z * z;
   }
-  Simulation simulation{Bodies{std::move(block)}, Contacts{}, Boundaries{}, CentralDifference{}};
+  return body;
+}
+
+void elastic_block(benchmark::State& state, double stabilization) {
+  set_thread_count(static_cast<int>(state.range(1)));
+  Simulation simulation{Bodies{block(state.range(0), stabilization)}, Contacts{}, Boundaries{}, CentralDifference{}};
   steps(state, simulation);
   describe(state, simulation.body<0>());
 }
 
+/// What no step can do without: per point one sweep over its row to gather F, something linear in the place of a stress, one
+/// sweep to scatter it. In the order of the points, by each thread into forces of its own, which are then added up; no law, no
+/// stabilisation, no energies, no time step. Steps are given as ratios to it.
+void bare_sweep(benchmark::State& state) {
+  set_thread_count(static_cast<int>(state.range(1)));
+  const Body body = block(state.range(0), 0.0);
+  const PointTable& table = body.table();
+  const std::size_t n = table.particles, threads = static_cast<std::size_t>(state.range(1));
+  const Field displacement(n, Vector4(1e-6, 2e-6, 3e-6, 0.0));
+  Field force(n, Vector4::Zero());
+  std::vector<Field> own(threads, force);
+  const auto sweep = [&](std::size_t thread) {
+    Field& f = own[thread];
+    std::fill(f.begin(), f.end(), Vector4::Zero());
+    for (std::size_t q = table.points() * thread / threads; q < table.points() * (thread + 1) / threads; ++q) {
+      Quad even[3] = {}, odd[3] = {};
+      const auto row = table.row(q);
+      for (std::size_t k = 0; k < row.size(); k += 2)
+        for (int K = 0; K < 3; ++K) {
+          even[K] += row[k].gradient[K] * quad(displacement[row[k].particle].data());
+          odd[K] += row[k + 1].gradient[K] * quad(displacement[row[k + 1].particle].data());
+        }
+      const Quad x = 1e3 * (even[0] + odd[0]), y = 1e3 * (even[1] + odd[1]), z = 1e3 * (even[2] + odd[2]);
+      for (const TableEntry& entry : row)
+        quad(f[entry.particle].data()) -= entry.gradient[0] * x + entry.gradient[1] * y + entry.gradient[2] * z;
+    }
+  };
+  measure(state,
+          [&] {
+            parallel_for(threads, sweep);
+            parallel_for(n, [&](std::size_t i) {
+              force[i] = own[0][i];
+              for (std::size_t t = 1; t < threads; ++t) force[i] += own[t][i];
+            });
+            benchmark::DoNotOptimize(force.data());
+          },
+          {{"ns_per_pair", table.pairs()}, {"ns_per_particle", n}});
+}
+
 BENCHMARK(cell_on_substrate)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(elastic_block, stabilized, 0.1)
-    ->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(elastic_block, plain, 0.0)
-    ->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"edge", "threads"})->ArgsProduct({{27, 54, 100}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+BENCHMARK(bare_sweep)->Apply(sizes);
+BENCHMARK_CAPTURE(elastic_block, plain, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(elastic_block, stabilized, 0.1)->Apply(sizes);
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 # Sourced by the run scripts: `install_packages NAME...` installs those Debian/Ubuntu packages that are missing.
 
 # What every build needs.
-build_packages=(g++ make cmake libeigen3-dev libnanoflann-dev libfmt-dev libcli11-dev libtomlplusplus-dev libhdf5-dev)
+build_packages=(g++ make cmake libeigen3-dev libnanoflann-dev libfmt-dev libcli11-dev libtomlplusplus-dev libhdf5-dev zlib1g-dev)
 
 install_packages() {
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -1,10 +1,7 @@
 // Meshes of Gmsh become clouds: text and binary files, hexahedra and simplices, regions, surfaces; the patch test on them;
 // damaged and impossible files are refused with place and cause.
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <random>
 #include <string>
 #include <tuple>
 
@@ -15,26 +12,19 @@
 #include <tactoid/input/all.hpp>
 #include <tactoid/kernel/all.hpp>
 #include <tactoid/material/modified_mooney_rivlin.hpp>
+#include <tactoid/output/vtu.hpp>
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/verify/patch_test.hpp>
 
+#include "input_files.hpp"
 #include "relative.hpp"
 
 using namespace tactoid;
+using test::Folder;
+using test::says;
 
 namespace {
-
-/// A folder that goes with the test.
-struct Folder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("tactoid_input_{}", std::random_device{}());
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-  [[nodiscard]] std::filesystem::path write(const std::string& content) const {
-    std::ofstream(path / "mesh.msh", std::ios::binary) << content;
-    return path / "mesh.msh";
-  }
-};
 
 /// Writes an MSH 4.1 file, text or binary, entity by entity.
 struct MshWriter {
@@ -145,16 +135,7 @@ PointCloud<D> read(MshWriter mesh, const MeshOptions& options = {.scale = 1e-6})
 template <int D = 3>
 std::string refusal(const std::string& content, const MeshOptions& options = {}) {
   const Folder folder;
-  try {
-    (void)read_gmsh<D>(folder.write(content), options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-bool says(const std::string& message, const std::string& what) {
-  CAPTURE(message);
-  return message.find(what) != std::string::npos && message.find('\n') == std::string::npos;
+  return test::refusal([&] { return read_gmsh<D>(folder.write(content), options); });
 }
 
 template <int D>
@@ -222,6 +203,25 @@ TEST_CASE("The linear patch test on meshes from files") {
   passes_patch_test(read<2>(grid<2>(5, true)), 1.3);
   passes_patch_test(read<3>(grid<3>(4, false)), 1.75);
   passes_patch_test(read<3>(grid<3>(2, true)), 1.3);
+  const Folder folder;
+  VtuGrid vtu;
+  const PointCloud<3> cubes = jitter(box({.size = {1e-6, 1e-6, 1e-6}, .cells = {4, 4, 4}}), 0.2);
+  vtu.points(cubes.positions);
+  vtu.cells(cubes.cells);
+  vtu.write(folder.path / "box.vtu");
+  passes_patch_test(read_vtu<3>(folder.path / "box.vtu"), 1.75);
+  // Nodes of the meshes without their cells, and points of a ball.
+  const auto table = [&]<int D>(const MshWriter& mesh, const PointCloud<D>&) {
+    std::string text = "x,y,z\n";
+    for (const Vector3& x : mesh.nodes) text += fmt::format("{},{},{}\n", x[0], x[1], x[2]);
+    return read_csv<D>(folder.write(text), {.scale = 1e-6});
+  };
+  passes_patch_test(table(grid<2>(5, true), PointCloud<2>{}), 1.3);
+  passes_patch_test(table(grid<3>(2, false), PointCloud<3>{}), 1.3);
+  std::string text = "z;y;x\n";
+  for (const Point<3>& X : jitter(ball({.radius = 1.0, .core_radius = 0.5, .core_cells = 2, .shells = 1}), 0.1).positions)
+    text += fmt::format("{};{};{}\n", X[2], X[1], X[0]);
+  passes_patch_test(read_csv<3>(folder.write(text), {.scale = 1e-6}), 1.3);
 }
 
 TEST_CASE("Physical groups are regions") {

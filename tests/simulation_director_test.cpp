@@ -140,3 +140,16 @@ TEST_CASE("A cell on a substrate with everything on: the same bits for 1, 2 and 
   }
   set_thread_count(threads_before);
 }
+
+TEST_CASE("Where the penalty of the director limits the step, the limit goes with 1/J") {
+  const auto step = [](double stretch) {
+    Body body{"bar", bar({.length = 1e-6, .cells = 12}), Rkpm<1>{}, NodalCentroids{},
+              Materials{Region{"body", NematicGel<>{}}}, DirectorField<>{.diffusivity = 1e-3, .core_size = 1e-9},
+              [](const Vector3&) { return Vector3(1.0, 0.0, 0.0); }};
+    for (std::size_t i = 0; i < body.size(); ++i) body.displacement[i][0] = (stretch - 1.0) * body.cloud().positions[i][0];
+    const Simulation simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{}, CentralDifference{}};
+    return simulation.largest_stable_time_step();
+  };
+  CHECK(step(1.0) == test::relative(1e-15).epsilon(1e-3));  // ε_d²/D; the diffusion adds little
+  CHECK(step(1.0) / step(1.25) == doctest::Approx(1.25).epsilon(1e-3));
+}

@@ -75,7 +75,7 @@ class Options {
     entry.type = "INTEGER";
     entry.shown = fmt::format("{}", *value);
     entry.read = [value, range](std::string_view text, std::string_view where) {
-      std::string_view digits = detail::trimmed(text);
+      std::string_view digits = trimmed(text);
       if (digits.empty()) throw ParameterError(fmt::format("{}: the value is empty; a whole number is needed.", where));
       if (digits.starts_with('+')) digits.remove_prefix(1);
       Integer number{};
@@ -94,11 +94,13 @@ class Options {
     insert(std::move(entry));
   }
 
-  /// A text, a path.
+  /// A text, a path. It may be empty if the default is.
   void add(std::string name, std::string* value, std::string help) {
     Entry entry{.name = std::move(name), .help = std::move(help), .type = "TEXT", .kind = Kind::text};
     entry.shown = *value;
-    entry.read = [value](std::string_view text, std::string_view where) { *value = checked_text(text, where); };
+    entry.read = [value, may_be_empty = value->empty()](std::string_view text, std::string_view where) {
+      *value = may_be_empty && text.empty() ? "" : checked_text(text, where);
+    };
     entry.toml = [value] { return toml_text(*value); };
     insert(std::move(entry));
   }
@@ -270,7 +272,7 @@ class Options {
   }
 
   static std::string checked_text(std::string_view text, std::string_view where) {
-    if (detail::trimmed(text).empty())
+    if (trimmed(text).empty())
       throw ParameterError(fmt::format("{}: the value is empty; a text is needed.", where));
     if (text.find('\0') != std::string_view::npos)
       throw ParameterError(fmt::format("{}: {} contains a zero byte.", where, in_quotes(text)));

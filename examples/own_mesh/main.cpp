@@ -2,6 +2,7 @@
 //
 //   gmsh -3 -format msh41 examples/own_mesh/cell.geo -o cell.msh
 //   own_mesh --mesh cell.msh --out out/own_mesh
+//   own_mesh --mesh cell.vtu --region-array part ...      own_mesh --mesh points.csv --alpha 1.4 ...
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include <tactoid/input/vtu_zlib.hpp>
 #include <tactoid/tactoid.hpp>
 
 #include "common/frame_series.hpp"
@@ -16,16 +18,45 @@
 #include "common/program.hpp"
 #include "common/run_keeper.hpp"
 
+namespace {
+
+struct Input {
+  std::string mesh = "cell.msh", region_array;
+  double scale = 1e-6, alpha = tactoid::PointsOptions{}.alpha;
+  int nucleus = 1, cytoplasm = 2;  // numbers of the regions in a VTU file
+};
+
+/// The body in a file, by the ending of its name.
+tactoid::PointCloud<3> read(const Input& input) {
+  using namespace tactoid;
+  const std::string ending = std::filesystem::path(input.mesh).extension().string();
+  if (ending == ".msh") return read_gmsh<3>(input.mesh, {.scale = input.scale});
+  if (ending == ".vtu")
+    return read_vtu<3>(input.mesh, {.scale = input.scale,
+                                    .region = input.region_array,
+                                    .region_names = {{input.nucleus, "nucleus"}, {input.cytoplasm, "cytoplasm"}},
+                                    .decompress = zlib_decompress});
+  if (ending == ".csv") return read_csv<3>(input.mesh, {.scale = input.scale, .alpha = input.alpha});
+  throw ParameterError(fmt::format("mesh = {} is not allowed: its name must end with .msh, .vtu or .csv.", in_quotes(input.mesh)));
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace tactoid;
   return run_program("own_mesh", [&] {
-    std::string mesh = "cell.msh", out = "out/own_mesh";
-    double scale = 1e-6, nucleus = 15e3, cytoplasm = 1.5e3, poisson = 0.45, speed = 0.3, end_time = 20e-6;
+    Input input;
+    std::string out = "out/own_mesh";
+    double nucleus = 15e3, cytoplasm = 1.5e3, poisson = 0.45, speed = 0.3, end_time = 20e-6;
     int threads = thread_count(), frames = 20;
     Restart restart;
-    Options options("own_mesh", "A body from a mesh of Gmsh, with the regions nucleus and cytoplasm, falls on a rigid plate.");
-    options.add("mesh", &mesh, "MSH 4.1 file: hexahedra or tetrahedra, physical volumes nucleus and cytoplasm");
-    options.add_quantity("scale", &scale, Quantity::length, Range::positive(), "The unit of length of the file");
+    Options options("own_mesh", "A body from a file, with the regions nucleus and cytoplasm, falls on a rigid plate.");
+    options.add("mesh", &input.mesh, "File of Gmsh (.msh, version 4.1), of VTK (.vtu): hexahedra or tetrahedra; or a table of points (.csv)");
+    options.add("region-array", &input.region_array, "Cell array with the regions in a VTU file; empty: region or gmsh:physical");
+    options.add("nucleus-region", &input.nucleus, Range::between(-1000000, 1000000), "Number of the nucleus in a VTU file");
+    options.add("cytoplasm-region", &input.cytoplasm, Range::between(-1000000, 1000000), "Number of the cytoplasm in a VTU file");
+    options.add("alpha", &input.alpha, Range::positive(), "Largest radius of a tetrahedron between points of a table, in their spacings");
+    options.add_quantity("scale", &input.scale, Quantity::length, Range::positive(), "The unit of length of the file");
     options.add_quantity("nucleus", &nucleus, Quantity::pressure, Range::positive(), "Young's modulus of the nucleus");
     options.add_quantity("cytoplasm", &cytoplasm, Quantity::pressure, Range::positive(), "Young's modulus of the cytoplasm");
     options.add("poisson", &poisson, Range::inside(0.0, 0.5), "Poisson's ratio of both");
@@ -38,8 +69,8 @@ int main(int argc, char** argv) {
     if (!options.parse(argc, argv)) return 0;
     set_thread_count(threads);
 
-    PointCloud<3> cloud = read_gmsh<3>(mesh, {.scale = scale});
-    fmt::print("{}: {} particles, {} cells, {} facets, volume {:.4g} m^3\n", mesh, cloud.size(), cloud.cells.size(), cloud.facets.size(),
+    PointCloud<3> cloud = read(input);
+    fmt::print("{}: {} particles, {} cells, {} facets, volume {:.4g} m^3\n", input.mesh, cloud.size(), cloud.cells.size(), cloud.facets.size(),
                volume(cloud));
     double bottom = cloud.positions.front()[2];
     for (const Point<3>& X : cloud.positions) bottom = std::min(bottom, X[2]);
@@ -50,7 +81,7 @@ int main(int argc, char** argv) {
                         Region{"cytoplasm", NeoHookean::from_young(cytoplasm, poisson)}}};
     std::fill(cell.velocity.begin(), cell.velocity.end(), Vector4(0.0, 0.0, -speed, 0.0));
     Simulation simulation{Bodies{std::move(cell)}, Contacts{},
-                          Boundaries{on<0>(RigidPlate{.point = {0.0, 0.0, bottom - 0.05 * scale}, .law = RepulsiveWall{.penalty = 1e11}})},
+                          Boundaries{on<0>(RigidPlate{.point = {0.0, 0.0, bottom - 0.05 * input.scale}, .law = RepulsiveWall{.penalty = 1e11}})},
                           CentralDifference{.safety = 0.5}};
 
     const std::optional<double> resumed_at = restart.resume(simulation);

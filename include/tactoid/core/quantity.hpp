@@ -80,13 +80,6 @@ inline constexpr Quantity Quantity::angle{"angle", quantity_units::angle};
 
 namespace detail {
 
-[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
 /// Length of the decimal number at the beginning of `text` (sign, digits, point, exponent), 0 where there is none.
 /// `exponent_at` is where its exponent begins, or its length.
 [[nodiscard]] inline std::size_t number_length(std::string_view text, std::size_t& exponent_at) {
@@ -115,7 +108,7 @@ namespace detail {
 /// Reads "5us", "5 us", "0.3", "10 kPa", "1e-9 s" into SI. A plain number is in the SI unit; "µ" is read as "u".
 /// Throws ParameterError with one sentence that begins with `name`.
 [[nodiscard]] inline double parse_quantity(std::string_view text, const Quantity& quantity, std::string_view name) {
-  const std::string_view given = detail::trimmed(text);
+  const std::string_view given = trimmed(text);
   if (given.empty())
     throw ParameterError(fmt::format("{}: the value is empty; {} is needed.", name,
                                      quantity.units.empty() ? "a number" : quantity.name));
@@ -126,7 +119,7 @@ namespace detail {
     throw ParameterError(fmt::format("{}: {} is not a finite number{}.", name, in_quotes(given),
                                      quantity.units.empty() ? "" : fmt::format(" with a unit of {}", quantity.name)));
   }
-  std::string symbol{detail::trimmed(given.substr(length))};
+  std::string symbol{trimmed(given.substr(length))};
   for (const std::string_view mu : {"\xC2\xB5", "\xCE\xBC"})
     if (symbol.starts_with(mu)) symbol.replace(0, mu.size(), "u");
 

@@ -1,13 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/read_file.hpp>
 #include <tactoid/core/text.hpp>
 #include <tactoid/input/mesh.hpp>
 
@@ -26,12 +25,7 @@ namespace detail {
 /// Numbers of an MSH file, text or binary, with the place in the messages.
 class MshScanner {
  public:
-  explicit MshScanner(const std::filesystem::path& path) : path_(path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) throw FileError(fmt::format("Cannot read {}.", in_quotes(path.string())));
-    content_.assign(std::istreambuf_iterator<char>(file), {});
-    if (file.bad()) throw FileError(fmt::format("Cannot read {}.", in_quotes(path.string())));
-  }
+  explicit MshScanner(const std::filesystem::path& path) : path_(path), content_(read_file(path)) {}
 
   [[noreturn]] void refuse(std::string_view what) const {
     throw FileError(fmt::format("{}, {}: {}", in_quotes(path_.string()), place(), what));
@@ -267,10 +261,7 @@ class MshReader {
       const auto named = names_.find(group->second);
       name = named != names_.end() ? named->second : fmt::format("group {}", group->second);
     }
-    for (std::size_t r = 0; r < regions_.size(); ++r)
-      if (regions_[r] == name) return r;
-    regions_.push_back(std::move(name));
-    return regions_.size() - 1;
+    return region_number(regions_, name);
   }
 
   MshScanner scan_;
@@ -293,8 +284,9 @@ class MshReader {
 ///
 /// The background cells are tensor products, so a triangle becomes three quadrilaterals and a tetrahedron four hexahedra: the
 /// spacing of the particles is about half an edge of the mesh, and a support of 1.3 times the longest edge is enough.
-/// Throws FileError for a file that cannot be read or is damaged (with line or byte), GeometryError for a mesh that is no body:
-/// inverted, flat or repeated cells, coincident nodes, positions that are not finite; ParameterError for the options.
+/// Throws FileError for a file that cannot be read or is damaged (with line or byte), GeometryError for a mesh that is no
+/// body: inverted, flat, repeated or overlapping cells, coincident nodes, positions that are not finite, a surface that
+/// touches itself in an edge or a point; ParameterError for the options.
 template <int D>
 [[nodiscard]] PointCloud<D> read_gmsh(const std::filesystem::path& path, const MeshOptions& options = {}) {
   return detail::MshReader<D>(path).read(options);

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -54,11 +56,78 @@ template <int D>
   }
 }
 
+/// The number of the region of that name, which is added if it is new.
+[[nodiscard]] inline std::size_t region_number(std::vector<std::string>& regions, std::string_view name) {
+  const auto found = std::find(regions.begin(), regions.end(), name);
+  if (found != regions.end()) return static_cast<std::size_t>(found - regions.begin());
+  regions.emplace_back(name);
+  return regions.size() - 1;
+}
+
+/// Vertices at which a surface of closed loops of vertices (facets; the two ends, where D = 2) is not that of a body:
+/// the sides of its facets have not two facets each, or its facets around a vertex are not one ring. Ascending.
+template <int D, class Loops>
+  requires(D > 1)
+[[nodiscard]] std::vector<Index> singular_vertices(const Loops& loops) {
+  using Side = std::array<Index, static_cast<std::size_t>(D) - 1>;
+  std::vector<std::pair<Side, Index>> sides;     // with the facet
+  std::vector<std::pair<Index, Index>> corners;  // vertex, facet
+  for (std::size_t f = 0; f < loops.size(); ++f)
+    for (std::size_t k = 0; k < loops[f].size(); ++k) {
+      const Index a = loops[f][k], b = loops[f][(k + 1) % loops[f].size()];
+      corners.emplace_back(a, static_cast<Index>(f));
+      if constexpr (D == 2)
+        sides.push_back({Side{a}, static_cast<Index>(f)});
+      else
+        sides.push_back({Side{std::min(a, b), std::max(a, b)}, static_cast<Index>(f)});
+    }
+  std::sort(sides.begin(), sides.end());
+  std::sort(corners.begin(), corners.end());
+  std::vector<Index> singular;
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    while (last < sides.size() && sides[last].first == sides[first].first) ++last;
+    if (last - first != 2) singular.insert(singular.end(), sides[first].first.begin(), sides[first].first.end());
+  }
+  if constexpr (D == 3) {
+    // From a facet at a vertex over the two sides that end there: does the walk meet all facets of the vertex?
+    std::vector<Index> near;
+    for (std::size_t first = 0, last = 0; first < corners.size(); first = last) {
+      while (last < corners.size() && corners[last].first == corners[first].first) ++last;
+      const Index v = corners[first].first;
+      near.assign(1, corners[first].second);
+      for (std::size_t n = 0; n < near.size(); ++n) {
+        const auto& loop = loops[near[n]];
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+          const Index a = loop[k], b = loop[(k + 1) % loop.size()];
+          if (a != v && b != v) continue;
+          const Side side = {std::min(a, b), std::max(a, b)};
+          for (auto at = std::lower_bound(sides.begin(), sides.end(), std::pair(side, Index{0}));
+               at != sides.end() && at->first == side; ++at)
+            if (std::find(near.begin(), near.end(), at->second) == near.end()) near.push_back(at->second);
+        }
+      }
+      if (near.size() != last - first) singular.push_back(v);
+    }
+  }
+  std::sort(singular.begin(), singular.end());
+  singular.erase(std::unique(singular.begin(), singular.end()), singular.end());
+  return singular;
+}
+
+/// A facet or the side of a cell as a loop of vertices, by its tensor order.
+template <std::size_t N>
+[[nodiscard]] std::array<Index, N> loop_of(std::array<Index, N> facet) {
+  if constexpr (N == 4) std::swap(facet[2], facet[3]);
+  return facet;
+}
+
 /// Every triangle becomes three quadrilaterals, every tetrahedron four hexahedra, with new particles in the middle of
-/// edges, faces and cells. Neighbours share them: a mesh that fits together still does.
+/// edges, faces and cells. Neighbours share them: a mesh that fits together still does. Where `region_of` is not empty,
+/// the part of a cell at a vertex is in that vertex's region.
 template <int D>
   requires(D > 1)
-void split_simplices(std::vector<Point<D>>& positions, std::vector<MeshCell<D>>& cells) {
+void split_simplices(std::vector<Point<D>>& positions, std::vector<MeshCell<D>>& cells,
+                     std::span<const std::size_t> region_of = {}) {
   std::map<std::vector<std::size_t>, std::size_t> centers;  // of the sorted vertices of an edge, a face, a cell
   const auto center = [&](std::vector<std::size_t> vertices) {
     std::sort(vertices.begin(), vertices.end());
@@ -74,7 +143,7 @@ void split_simplices(std::vector<Point<D>>& positions, std::vector<MeshCell<D>>&
   for (const MeshCell<D>& cell : cells)
     for (std::size_t a = 0; a <= static_cast<std::size_t>(D); ++a) {
       const auto p = even_permutation<D>(a);
-      MeshCell<D> part{.vertices = {}, .region = cell.region, .tag = cell.tag};
+      MeshCell<D> part{.vertices = {}, .region = region_of.empty() ? cell.region : region_of[cell.vertices[a]], .tag = cell.tag};
       // Corner (i, j, k) of the part is the middle of vertex a and of those of the vertices p₁, p₂, p₃ whose bit is set.
       for (std::size_t corner = 0; corner < (std::size_t{1} << D); ++corner) {
         std::vector<std::size_t> of = {cell.vertices[a]};
@@ -87,16 +156,62 @@ void split_simplices(std::vector<Point<D>>& positions, std::vector<MeshCell<D>>&
   cells = std::move(split);
 }
 
-/// The cloud of a mesh: only vertices that cells use become particles. `where` names the file in messages; `tags` are the
-/// file's numbers of the positions.
+/// Refuses cells that overlap or whose surface is none of a body: a side belongs to one cell, or to two that stand on
+/// both sides of it; facets meet in pairs along edges, and in one ring around a vertex.
+template <int D>
+  requires(D > 1)
+void check_surface(const PointCloud<D>& cloud, const std::vector<std::size_t>& tags,
+                   std::string_view where) {
+  using Facet = typename PointCloud<D>::Facet;
+  struct Side {
+    Facet key;  // the loop from its least vertex, in the direction of its lesser neighbour
+    bool turned;
+    std::size_t cell;
+    bool operator<(const Side& other) const { return std::tie(key, cell) < std::tie(other.key, other.cell); }
+  };
+  std::vector<Side> sides;
+  PointCloud<D> one;
+  for (std::size_t c = 0; c < cloud.cells.size(); ++c) {
+    one.cells = {cloud.cells[c]};
+    for (const Facet& facet : extract_facets(one)) {
+      Side side{loop_of(facet), false, c};
+      std::rotate(side.key.begin(), std::min_element(side.key.begin(), side.key.end()), side.key.end());
+      if constexpr (D == 2)
+        side.turned = side.key[0] != facet[0];
+      else if (side.key[3] < side.key[1])
+        side.turned = true, std::swap(side.key[1], side.key[3]);
+      sides.push_back(side);
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    while (last < sides.size() && sides[last].key == sides[first].key) ++last;
+    if (last - first > 2 || (last - first == 2 && sides[first].turned == sides[first + 1].turned))
+      throw GeometryError(fmt::format("{}: cells {} and {} overlap: they stand on the same side of a face at {}.",
+                                      where, tags[sides[last - 2].cell], tags[sides[last - 1].cell],
+                                      describe<D>(cloud.positions[sides[first].key[0]])));
+  }
+  std::vector<Facet> loops;
+  for (const Facet& facet : cloud.facets) loops.push_back(loop_of(facet));
+  if (const std::vector<Index> singular = singular_vertices<D>(loops); !singular.empty())
+    throw GeometryError(fmt::format(
+        "{}: the surface is not that of a body at {}: parts of it touch there in a point or along an edge only, or "
+        "cells do not fit together.",
+        where, describe<D>(cloud.positions[singular.front()])));
+}
+
+/// The cloud of a mesh: only vertices that cells use become particles. `where` names the file in messages; `tags` are
+/// the file's numbers of the positions; `region_of` (if not empty) are regions of the vertices of simplices, see
+/// split_simplices.
 template <int D>
 [[nodiscard]] PointCloud<D> cloud_of_mesh(std::vector<Point<D>> positions, const std::vector<std::size_t>& tags,
                                           std::vector<MeshCell<D>> cells, std::vector<std::string> regions,
-                                          const MeshOptions& options, std::string_view where) {
+                                          const MeshOptions& options, std::string_view where,
+                                          [[maybe_unused]] std::span<const std::size_t> region_of = {}) {
   options.validate();
   constexpr std::size_t corners = std::size_t{1} << D, simplex = static_cast<std::size_t>(D) + 1;
   const auto refuse = [&](std::string_view what) { throw GeometryError(fmt::format("{}: {}", where, what)); };
-  if (cells.empty()) refuse(fmt::format("there are no cells of {} dimensions.", D));
+  if (cells.empty()) refuse(fmt::format("there are no cells of {} dimensions; points without cells are read from a table (read_csv).", D));
   for (Point<D>& X : positions) X *= options.scale;
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (!positions[i].allFinite()) refuse(fmt::format("node {} has a position that is not finite.", tags[i]));
@@ -113,7 +228,8 @@ template <int D>
     if (!is_new) refuse(fmt::format("cells {} and {} have the same nodes.", other->second, cell.tag));
     if (cell.vertices.size() != simplex) continue;
     Eigen::Matrix<double, D, D> edges;
-    for (int k = 0; k < D; ++k) edges.col(k) = positions[cell.vertices[static_cast<std::size_t>(k) + 1]] - positions[cell.vertices[0]];
+    for (int k = 0; k < D; ++k)
+      edges.col(k) = positions[cell.vertices[static_cast<std::size_t>(k) + 1]] - positions[cell.vertices[0]];
     if (!(edges.determinant() > 0.0))
       refuse(fmt::format("cell {} at {} is inverted or flat (its volume is {:g} of a unit cell).", cell.tag,
                          describe<D>(positions[cell.vertices[0]]), edges.determinant()));
@@ -121,7 +237,7 @@ template <int D>
   if (any_simplex && any_tensor)
     refuse("simplices stand beside hexahedra or quadrilaterals: they do not fit together; use one kind.");
   if constexpr (D > 1)
-    if (any_simplex) split_simplices<D>(positions, cells);
+    if (any_simplex) split_simplices<D>(positions, cells, region_of);
 
   PointCloud<D> cloud;
   cloud.regions = std::move(regions);
@@ -139,6 +255,7 @@ template <int D>
     }
     cloud.cells.push_back(c);
     cloud.cell_regions.push_back(static_cast<Index>(cell.region));
+    tag_of_cell.push_back(cell.tag);
     const Corners<D> x = cell_corners(cloud, c);
     for (std::size_t a = 0; a < corners; ++a) {
       Point<D> xi;
@@ -158,6 +275,7 @@ template <int D>
       refuse(fmt::format("two nodes coincide at {}: the mesh does not hold together there.", describe<D>(cloud.positions[i])));
   }
   cloud.facets = extract_facets(cloud);
+  if constexpr (D > 1) check_surface(cloud, tag_of_cell, where);
   cloud = morton_ordered(cloud);
   validate(cloud);
   return cloud;

@@ -29,11 +29,10 @@ struct ConstrainedSolution {
 /// conjugate gradients in the null space of N, preconditioned by the diagonal D of K. Every residual is projected by
 /// the small system N D⁻¹ Nᵀ, so the conditions hold to round-off all the way. N. I. M. Gould, M. E. Hribar and
 /// J. Nocedal, SIAM J. Sci. Comput. 2001, 23, 1376. Both triangles of K are read. Same bits for any number of threads.
-[[nodiscard]] inline ConstrainedSolution projected_conjugate_gradients(const Eigen::SparseMatrix<double>& K,
-                                                                       const Eigen::SparseMatrix<double>& N,
-                                                                       const Eigen::VectorXd& f,
-                                                                       const Eigen::VectorXd& g, double tolerance,
-                                                                       int max_iterations) {
+/// `Matrix` is an Eigen::SparseMatrix<double>; a template, so that programs that solve nothing do not compile it.
+template <class Matrix>
+[[nodiscard]] ConstrainedSolution projected_conjugate_gradients(const Matrix& K, const Matrix& N, const Eigen::VectorXd& f,
+                                                                const Eigen::VectorXd& g, double tolerance, int max_iterations) {
   using State = ConstrainedSolution::State;
   ConstrainedSolution solution;
   const Eigen::VectorXd diagonal = K.diagonal();
@@ -42,9 +41,9 @@ struct ConstrainedSolution {
     return solution;
   }
   const Eigen::VectorXd inverse = diagonal.cwiseInverse();
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> conditions;
+  Eigen::SimplicialLDLT<Matrix> conditions;
   if (N.rows() > 0) {
-    const Eigen::SparseMatrix<double> small = N * inverse.asDiagonal() * N.transpose();
+    const Matrix small = N * inverse.asDiagonal() * N.transpose();
     conditions.compute(small);
     if (conditions.info() != Eigen::Success) {
       solution.state = State::dependent;
@@ -56,7 +55,7 @@ struct ConstrainedSolution {
     Eigen::VectorXd y(x.size());
     parallel_for(static_cast<std::size_t>(x.size()), [&](std::size_t j) {
       double sum = 0.0;
-      for (Eigen::SparseMatrix<double>::InnerIterator it(K, static_cast<Eigen::Index>(j)); it; ++it)
+      for (typename Matrix::InnerIterator it(K, static_cast<Eigen::Index>(j)); it; ++it)
         sum += it.value() * x[it.row()];
       y[static_cast<Eigen::Index>(j)] = sum;
     });

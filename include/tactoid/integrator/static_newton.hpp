@@ -259,15 +259,18 @@ struct StaticNewton {
     return update;
   }
 
-  static bool symmetric(const Eigen::SparseMatrix<double>& A) {
-    const Eigen::SparseMatrix<double> transposed = A.transpose();
+  // Templates, so that programs that solve nothing do not compile the factorisations.
+  template <class Matrix>
+  static bool symmetric(const Matrix& A) {
+    const Matrix transposed = A.transpose();
     return (A - transposed).norm() <= 1e-9 * A.norm();
   }
 
-  static bool solve_linear(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& right, Eigen::VectorXd& x,
+  template <class Matrix>
+  static bool solve_linear(const Matrix& A, const Eigen::VectorXd& right, Eigen::VectorXd& x,
                            StaticReport& report) {
     if (symmetric(A)) {
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(A);
+      const Eigen::SimplicialLDLT<Matrix> ldlt(A);
       if (ldlt.info() == Eigen::Success && ldlt.vectorD().minCoeff() > 0.0) {
         x = ldlt.solve(right);
         x += ldlt.solve(right - A * x);
@@ -277,10 +280,10 @@ struct StaticNewton {
     return solve_lu(A, right, x, report);
   }
 
-  static bool solve_lu(const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& right, Eigen::VectorXd& x,
-                       StaticReport& report) {
+  template <class Matrix>
+  static bool solve_lu(const Matrix& A, const Eigen::VectorXd& right, Eigen::VectorXd& x, StaticReport& report) {
     report.factorized_lu = true;
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;
+    Eigen::SparseLU<Matrix> lu;
     lu.compute(A);
     if (lu.info() != Eigen::Success) return false;
     x = lu.solve(right);

@@ -199,6 +199,13 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return largest;
   }
 
+  /// Largest volume ratio J over the points of a body with a director. Known after add_internal_forces.
+  [[nodiscard]] double largest_volume_ratio() const
+    requires has_director
+  {
+    return *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
+  }
+
   // --- views -------------------------------------------------------------------------------------------------
   /// Cauchy stress and volume ratio at all quadrature points, without advancing any history.
   [[nodiscard]] std::vector<PointSample> sample_points() {
@@ -327,7 +334,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         share(volumes_, table_.point_values, q, table_.volume[q]);
       }
     });
-    table_.mass_shares = {};
+    table_.mass_shares = std::vector<double>();  // an assignment of {} would keep the memory
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (!(masses_[i] > 0.0))
         throw GeometryError(fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.",

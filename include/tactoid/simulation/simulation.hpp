@@ -149,7 +149,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// observer is told by `last_good_state(simulation)` if it has that function, and the error goes on.
   template <class... Observers>
   void run(double until, Observers&&... observers) {
-    static_assert((Observer<std::remove_cvref_t<Observers>, Simulation> && ...), "Simulation::run takes observers.");
+    static_assert((Observer<std::remove_reference_t<Observers>, Simulation> && ...), "Simulation::run takes observers.");
     if (!(until >= time_) || !std::isfinite(until)) reject("Simulation.run: end time", until, "s", fmt::format("finite and not before the present time, {:g} s", time_));
     const bool resumed = std::exchange(resumed_, false);
     if (!resumed) {

@@ -59,11 +59,11 @@ class StableStep {
       if (omega2 > 0.0) step = std::min(step, (std::sqrt(damping * damping + 4.0 * omega2) - damping) / omega2);
     });
     if constexpr (Body::has_director) {
-      // Explicit diffusion and penalty of the director: D (k² + 2/ε_d²) Δt <= 2.
+      // Explicit diffusion and penalty of the director, whose strength goes with the volume ratio: D J (k² + 2/ε_d²) Δt <= 2.
       double k2 = 0.0;
       for (std::size_t r = 0; r < waves.size(); ++r) k2 = std::max(k2, ratio_[r] * waves[r]);
       const auto& law = body.director_law();
-      step = std::min(step, 2.0 / (law.diffusivity * (k2 + 2.0 / (law.core_size * law.core_size))));
+      step = std::min(step, 2.0 / (law.diffusivity * body.largest_volume_ratio() * (k2 + 2.0 / (law.core_size * law.core_size))));
     }
     return step;
   }

@@ -62,13 +62,13 @@ template <class Law, class T>
 }
 
 /// κ Cᵀ w C of the stabilising energy ½ κ Σ_J w_J |Σ_M c_JM u_M|², c_JM = δ_JM − δ_IM − ΔX_J · G_M, the same for
-/// every component.
-[[nodiscard]] inline Eigen::MatrixXd stabilization_stiffness(const PointTable& table, std::size_t q, std::size_t size,
-                                                             double kappa) {
+/// every component. (A template, so that programs that need no stiffness do not compile it.)
+template <class Matrix = Eigen::MatrixXd>
+[[nodiscard]] Matrix stabilization_stiffness(const PointTable& table, std::size_t q, std::size_t size, double kappa) {
   const auto row = table.row(q).first(size);
   const auto n = static_cast<Eigen::Index>(size);
   const Index owner = table.owner[q];
-  Eigen::MatrixXd c(n, n);
+  Matrix c(n, n);
   const auto weights = table.bonds(q);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(n);
   for (Eigen::Index J = 0; J < n; ++J) {
