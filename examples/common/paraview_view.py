@@ -36,13 +36,17 @@ def parse_time(text):
 def check_files(series):
     """ParaView tells of a missing file on its error output only."""
     names = set()
-    for entry in ElementTree.parse(series).getroot().iter("DataSet"):
+    try:
+        entries = list(ElementTree.parse(series).getroot().iter("DataSet"))
+    except ElementTree.ParseError as error:
+        raise ValueError(f"{series} is no series of ParaView, or it is cut off: {error}.") from None
+    for entry in entries:
         path = os.path.join(os.path.dirname(series), entry.get("file"))
         if not os.path.isfile(path):
             raise ValueError(f"{series} names {entry.get('file')}, which is not there.")
         names.add(entry.get("name"))
     if not {"cell", "substrate"} <= names:
-        raise ValueError(f"{series} is no series of a cell on a substrate: its bodies are {', '.join(sorted(names))}.")
+        raise ValueError(f"{series} is no series of a cell on a substrate: its bodies are {', '.join(sorted(names)) or 'none'}.")
 
 
 def check_display():

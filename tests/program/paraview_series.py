@@ -136,6 +136,8 @@ class ParaView(unittest.TestCase):
         refuse("names fields/substrate_0001.vtu, which is not there", "out")
         (self.folder / "out" / "fields.pvd").write_text((self.folder / "out" / "fields.pvd").read_text().replace("substrate", "cell"))
         refuse("its bodies are cell.", "out")
+        (self.folder / "out" / "fields.pvd").write_text("<VTKFile><Collection>")
+        refuse("is no series of ParaView, or it is cut off: no element found", "out")
 
 
 if __name__ == "__main__":
