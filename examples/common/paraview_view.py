@@ -2,8 +2,8 @@
 
     pvpython examples/common/paraview_view.py out/spreading_uniform [--time 4us] [--output view.png] [--state view.pvsm]
 
-On a machine without a display write `xvfb-run -a pvpython …`. ParaView's window opens the state file by File > Load State; there all
-times of the series can be played.
+On a machine without a display write `xvfb-run -a -s -noreset pvpython …` (a server that begins anew when its last client has gone misses
+ParaView's second connection). ParaView's window opens the state file by File > Load State; there all times of the series can be played.
 """
 
 import argparse
@@ -53,7 +53,7 @@ def check_display():
     """Without a display a ParaView that draws through one dies of a segmentation fault."""
     headless = Capabilities.HEADLESS_RENDERING_USES_EGL | Capabilities.HEADLESS_RENDERING_USES_OSMESA
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY") and not Capabilities.GetLocalCapabilities() & headless:
-        raise ValueError("There is no display, and this ParaView needs one to draw; write xvfb-run -a pvpython … .")
+        raise ValueError("There is no display, and this ParaView needs one to draw; write xvfb-run -a -s -noreset pvpython … .")
 
 
 def bond_range(folder):

@@ -77,10 +77,10 @@ class ParaView(unittest.TestCase):
         return result
 
     def display(self):
-        """Of an Xvfb of its own."""
+        """Of an Xvfb of its own, which does not begin anew between two connections: the second one would find nobody."""
         if shutil.which("Xvfb") is None:
             self.skipTest("Xvfb is not installed")
-        server = subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0", "1600x900x24", "-nolisten", "tcp"],
+        server = subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0", "1600x900x24", "-nolisten", "tcp", "-noreset"],
                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.addCleanup(server.stdout.close)
         self.addCleanup(server.wait)
