@@ -2,8 +2,9 @@
 
     pvpython examples/common/paraview_view.py out/spreading_uniform [--time 4us] [--output view.png] [--state view.pvsm]
 
-On a machine without a display write `xvfb-run -a -s -noreset pvpython …` (a server that begins anew when its last client has gone misses
-ParaView's second connection). ParaView's window opens the state file by File > Load State; there all times of the series can be played.
+On a machine without a display write `xvfb-run -a -s -noreset pvpython …` (a server that begins anew when its last client has
+gone misses ParaView's second connection). ParaView's window opens the state file by File > Load State; there all times of the
+series can be played.
 """
 
 import argparse
