@@ -256,6 +256,18 @@ TEST_CASE("a history and a series are continued behind a time") {
   CHECK(message<ParameterError>([&] { HistoryWriter(csv, {"time", "radius"}, 0.2); }) ==
         "HistoryWriter: \"" + csv.string() + "\" has other columns, and cannot be continued.");
   CHECK(read(csv) == lines);
+  // The time may be another column.
+  const fs::path curve = scratch.path / "curve.csv";
+  {
+    HistoryWriter history(curve, {"force", "time", "area"});
+    for (const double t : {0.1, 0.2, 0.3}) history.write(std::vector<double>{1.0 - t, t, 2.0});
+  }
+  { const HistoryWriter history(curve, {"force", "time", "area"}, 0.2, "time"); }
+  CHECK(read(curve) == "force,time,area\n0.9,0.1,2\n0.8,0.2,2\n");
+  { const HistoryWriter history(curve, {"force", "time", "area"}, 1.5, "area"); }
+  CHECK(read(curve) == "force,time,area\n");
+  CHECK(message<ParameterError>([&] { HistoryWriter(curve, {"force", "time", "area"}, 0.2, "times"); }) ==
+        "HistoryWriter: \"times\" is no column of \"" + curve.string() + "\".");
   const HistoryWriter none(scratch.path / "new.csv", {"time"}, 0.2);
   CHECK(read(scratch.path / "new.csv") == "time\n");
 }

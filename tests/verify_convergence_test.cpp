@@ -3,7 +3,15 @@
 #include <array>
 #include <cmath>
 
+#include <tactoid/boundary/all.hpp>
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/state.hpp>
+#include <tactoid/geometry/all.hpp>
+#include <tactoid/integrator/all.hpp>
+#include <tactoid/kernel/all.hpp>
+#include <tactoid/material/all.hpp>
+#include <tactoid/quadrature/all.hpp>
+#include <tactoid/simulation/all.hpp>
 #include <tactoid/verify/convergence.hpp>
 #include <tactoid/verify/energy_watch.hpp>
 
@@ -65,4 +73,39 @@ TEST_CASE("The energy watch keeps the largest error and its time; NaN is infinit
   watch.after_step(run);
   CHECK(std::isinf(watch.largest_error));
   CHECK(std::isinf(watch.largest_defect));
+}
+
+TEST_CASE("An energy watch that is saved with its run and restored knows what the whole run's knows") {
+  // The end is pulled, then held: the largest error lies before the checkpoint, and a new watch would not know of it.
+  const auto compose = [] {
+    Body block{"block", box({.size = {2e-6, 1e-6, 1e-6}, .cells = {4, 2, 2}}), Rkpm<3>{}, NodalCentroids{},
+               Materials{Region{"body", NeoHookean::from_young(10e3, 0.3)}}};
+    const auto left = select(block.cloud(), [](const Point<3>& X) { return X[0] < 1e-9; });
+    const auto right = select(block.cloud(), [](const Point<3>& X) { return X[0] > 1.999e-6; });
+    const auto pull = [](const Vector3&, double t) { return Vector3(0.3e-6 * std::min(t / 0.1e-6, 1.0), 0.0, 0.0); };
+    return Simulation{Bodies{std::move(block)}, Contacts{}, Boundaries{on<0>(fixed(left)), on<0>(PrescribedMotion{right, pull, {true, false, false}})},
+                      CentralDifference{}};
+  };
+  constexpr double end = 1e-6;
+  auto whole = compose();
+  EnergyWatch watch;
+  SavedState saved, saved_watch;
+  whole.run(end, watch, every_steps(1, [&](auto& s) {
+              if (!saved.empty() || s.time() < 0.5 * end) return;
+              saved = save_state(s);
+              saved_watch = save_state(watch);
+            }));
+  REQUIRE(!saved.empty());
+  REQUIRE(watch.largest_error > 0.0);
+  REQUIRE(watch.time < 0.5 * end);
+
+  auto resumed = compose();
+  EnergyWatch continued, anew;
+  restore_state(resumed, saved);
+  restore_state(continued, saved_watch);
+  resumed.run(end, continued, anew);
+  CHECK(save_state(continued) == save_state(watch));
+  CHECK(continued.error() == watch.error());
+  CHECK(anew.largest_defect < watch.largest_defect);
+  CHECK(anew.time >= 0.5 * end);
 }

@@ -2,16 +2,21 @@
 //
 //   bar_hysteresis --frequency 1MHz --method uniform --out out/bar
 //   bar_hysteresis --frequency 100kHz --bulk-modulus 2.2GPa --method inertial
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <tactoid/tactoid.hpp>
 
+#include "common/frame_series.hpp"
 #include "common/options.hpp"
 #include "common/program.hpp"
+#include "common/run_keeper.hpp"
 
 using namespace tactoid;
 
@@ -81,6 +86,31 @@ struct BarParameters {
     const double e = largest_strain();
     return 4.0 * pi * viscosity * 2.0 * pi * frequency * (1.0 - std::sqrt(1.0 - e * e));
   }
+
+  /// What a continued run keeps: the motion of the end, and which cycle is recorded.
+  template <class Archive>
+  void state(Archive& archive) const {
+    archive.expect("frequency", frequency);
+    archive.expect("amplitude", amplitude);
+    archive.expect("cycles", cycles);
+  }
+};
+
+/// What is kept of the recorded cycle.
+struct RecordedCycle {
+  bool begun = false;
+  double work_before = 0.0, dissipated_before = 0.0;  ///< until it began, J/m²
+  double peak = 0.0;                                  ///< of the mean stress, Pa
+  std::vector<double> last = {};                      ///< line of the history
+
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("begun", begun);
+    archive("work_before", work_before);
+    archive("dissipated_before", dissipated_before);
+    archive("peak", peak);
+    archive("last", last);
+  }
 };
 
 /// Means over the bar, by reference volume: the Cauchy stress along it (Pa) and the angle of the director (rad).
@@ -105,6 +135,8 @@ int run(int argc, char** argv) {
   Options options("bar_hysteresis",
                   "A bar of active nematic gel under a periodic motion of its end (Zeng and Li, Soft Matter 2012, 8, 5765, Fig. 3).");
   p.add_to(options);
+  Restart restart;
+  restart.add_to(options);
   options.add("out", &out, "Folder of the results");
   options.add("threads", &threads, Range::between(1, 1024), "Threads");
   options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView of the recorded cycle");
@@ -145,52 +177,78 @@ int run(int argc, char** argv) {
                  on<0>(stretched(p.method == "uniform" ? inside : std::vector<Index>{}))},
       CentralDifference{.safety = p.safety, .max_time_step = p.period() / 2000.0}};
 
+  RecordedCycle recorded;
+  restart.restore("motion", p);
+  restart.restore("recorded", recorded);
+  const std::optional<double> resumed_at = restart.resume(simulation);
   const std::filesystem::path folder = out;
-  prepare_folder(folder / "fields");
-  options.write_toml(folder / "parameters.toml");
+  prepare_folder(folder);
   const std::vector<std::string> columns = {"time",           "strain",        "stress",         "end_stress", "director_angle",
                                             "kinetic_energy", "strain_energy", "dissipated_energy", "external_work", "energy_error"};
-  HistoryWriter history(folder / "history.csv", columns);
-  PvdSeries series(folder / "fields.pvd");
-  std::vector<double> last;
-  double peak = 0.0;
-  int frame = 0;
+  HistoryWriter history(folder / "history.csv", columns, resumed_at);
+  FrameSeries series(folder, {"bar"}, resumed_at);
+  restart.restore("series", series);
+  restart.announce(simulation);
+  options.write_toml(folder / "parameters.toml");
+  RunKeeper keeper(restart, options, folder, [&](StateWriter& writer) {
+    writer.part("motion", p);
+    writer.part("recorded", recorded);
+    writer.part("simulation", simulation);
+    writer.part("series", series);
+  });
   const auto record = [&](auto& s) {
     const auto [stress, angle] = means(s.template body<0>());
     const EnergyLedger& e = s.ledger();
-    last = {s.time(), p.end_displacement(s.time()) / L, stress, reactions<0>(s).conditions[0][0], angle, e.kinetic,
-            e.strain, e.dissipated, e.external_work, e.error()};
-    history.write(last);
-    peak = std::max(peak, std::abs(stress));
+    recorded.last = {s.time(), p.end_displacement(s.time()) / L, stress, reactions<0>(s).conditions[0][0], angle, e.kinetic,
+                     e.strain, e.dissipated, e.external_work, e.error()};
+    history.write(recorded.last);
+    recorded.peak = std::max(recorded.peak, std::abs(stress));
   };
   const auto write_frame = [&](auto& s) {
-    auto& bar = s.template body<0>();
-    const std::string name = fmt::format("fields/bar_{:04d}.vtu", frame++);
-    write_body_frame(folder / name, bar, s.template particles<0>(), stress_fields(bar), s.time());
-    series.add(s.time(), name, bar.name());
+    series.next();
+    series.add(0, s.template body<0>(), s.template particles<0>(), s.time());
   };
   const double recorded_from = (p.cycles - 1) * p.period(), end = p.cycles * p.period();
   fmt::print("{} particles, {} cycles of {:g} s, stable step {:.3g} s\n", simulation.body<0>().size(), p.cycles, p.period(),
              simulation.largest_stable_time_step());
-  Progress progress(end);
-  auto show = every_steps(1000, [&](auto& s) { progress.update(s.time(), s.steps()); });
-  simulation.run(recorded_from, show);
-  const EnergyLedger before = simulation.ledger();
-  simulation.run(end, every(p.period() / p.samples, record), every(p.period() / frames, write_frame), show);
-  progress.finish();
-
-  const double loss = (simulation.ledger().external_work - before.external_work) / L;
-  const double dissipated = (simulation.ledger().dissipated - before.dissipated) / L;
-  Summary summary;
-  for (std::size_t i = 0; i < columns.size(); ++i) summary.set(columns[i], last[i]);
-  summary.set("loss", loss).set("dissipated", dissipated).set("uniform_loss", p.uniform_loss());
-  summary.set("peak_stress", peak).set("steps", simulation.steps()).set("particles", simulation.body<0>().size());
-  summary.set("end_speed_over_wave_speed",
-              2.0 * pi * p.frequency * p.amplitude / std::sqrt(p.bulk_modulus / p.density));
-  summary.set("threads", thread_count()).set("version", version).set("completed", true);
-  summary.write(folder / "summary.json");
+  const std::size_t first_step = simulation.steps();
+  Progress progress(end, simulation.time());
+  auto show = every_steps(1000, [&](auto& s) { progress.update(s.time(), s.steps() - first_step); });
+  auto keep = every_steps(1, [&](auto&) { keeper.check(); });
+  const auto finish = [&](bool completed) {
+    progress.finish();
+    Summary summary;
+    for (std::size_t i = 0; i < recorded.last.size(); ++i) summary.set(columns[i], recorded.last[i]);
+    if (completed) {
+      summary.set("loss", (simulation.ledger().external_work - recorded.work_before) / L);
+      summary.set("dissipated", (simulation.ledger().dissipated - recorded.dissipated_before) / L);
+      summary.set("uniform_loss", p.uniform_loss()).set("peak_stress", recorded.peak);
+    }
+    summary.set("steps", simulation.steps()).set("particles", simulation.body<0>().size());
+    summary.set("end_speed_over_wave_speed", 2.0 * pi * p.frequency * p.amplitude / std::sqrt(p.bulk_modulus / p.density));
+    summary.set("threads", thread_count()).set("version", version).set("completed", completed);
+    summary.write(folder / "summary.json");
+  };
+  try {
+    if (!recorded.begun) {
+      simulation.run(recorded_from, show, keep);
+      recorded.begun = true;
+      recorded.work_before = simulation.ledger().external_work;
+      recorded.dissipated_before = simulation.ledger().dissipated;
+    }
+    simulation.run(end, every(p.period() / p.samples, record), every(p.period() / frames, write_frame), show, keep);
+  } catch (const Interrupted&) {
+    keeper.save();
+    finish(false);
+    throw;
+  } catch (const ComputationError&) {
+    finish(false);
+    throw;
+  }
+  keeper.save();
+  finish(true);
   fmt::print("{} steps; loss per cycle and volume {:.6g} Pa, of the uniform bar exactly {:.6g} Pa; results in {}\n",
-             simulation.steps(), loss, p.uniform_loss(), out);
+             simulation.steps(), (simulation.ledger().external_work - recorded.work_before) / L, p.uniform_loss(), out);
   return 0;
 }
 

@@ -8,15 +8,18 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <tactoid/tactoid.hpp>
 
+#include "common/frame_series.hpp"
 #include "common/octant.hpp"
 #include "common/options.hpp"
 #include "common/program.hpp"
+#include "common/run_keeper.hpp"
 
 using namespace tactoid;
 
@@ -118,6 +121,18 @@ struct CompressionParameters {
     const double x = std::clamp(t / duration / ramp, 0.0, 1.0);
     return radius * reduction / (1.0 - 0.5 * ramp) / duration * (3.0 - 2.0 * x) * x * x;
   }
+
+  /// What a continued run keeps: the motion of the plates.
+  template <class Archive>
+  void state(Archive& archive) const {
+    archive.expect("reduction", reduction);
+    if (method == "static") {
+      archive.expect("samples", samples);
+    } else {
+      archive.expect("duration", duration);
+      archive.expect("ramp", ramp);
+    }
+  }
 };
 
 /// Particles in the plane of symmetry normal to direction k.
@@ -133,8 +148,24 @@ std::vector<PrescribedMotion> symmetry(const PointCloud<3>& cloud) {
 /// Writes history.csv, the frames and summary.json.
 class Recorder {
  public:
-  Recorder(const CompressionParameters& p, std::filesystem::path folder)
-      : p_(p), folder_(std::move(folder)), history_(folder_ / "history.csv", columns()), series_(folder_ / "fields.pvd") {}
+  /// Where a continued run stands.
+  struct Place {
+    double line;   ///< time in the history, s; of equilibria the depth of the plates, m
+    double frame;  ///< time of the frames
+  };
+  /// With `resumed_at` it goes on with the files of the run that is continued, and awaits its state.
+  Recorder(const CompressionParameters& p, std::filesystem::path folder, std::optional<Place> resumed_at)
+      : p_(p),
+        folder_(std::move(folder)),
+        history_(folder_ / "history.csv", columns(), resumed_at ? std::optional(resumed_at->line) : std::nullopt,
+                 p.method == "static" ? "plate_depth" : "time"),
+        series_(folder_, {"body"}, resumed_at ? std::optional(resumed_at->frame) : std::nullopt) {}
+
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("last", last_);
+    series_.state(archive);
+  }
 
   static std::vector<std::string> columns() {
     return {"reduction",     "force",          "time",          "plate_depth",   "kinetic_energy",
@@ -157,9 +188,8 @@ class Recorder {
   }
   template <class Body>
   void write_frame(Body& body, const ParticleFields& fields, double time) {
-    const std::string name = fmt::format("fields/body_{:04d}.vtu", frame_++);
-    write_body_frame(folder_ / name, body, fields, stress_fields(body), time);
-    series_.add(time, name, body.name());
+    series_.next();
+    series_.add(0, body, fields, time);
   }
   void write_summary(std::size_t particles, std::size_t steps, double seconds, bool completed) const {
     Summary summary;
@@ -189,9 +219,26 @@ class Recorder {
   const CompressionParameters& p_;
   std::filesystem::path folder_;
   HistoryWriter history_;
-  PvdSeries series_;
+  FrameSeries series_;
   std::vector<double> last_;
-  int frame_ = 0;
+};
+
+/// What a run needs beside its body.
+struct Run {
+  const CompressionParameters& p;
+  const Options& options;
+  const Restart& restart;
+  std::filesystem::path folder;
+  int frames;
+
+  /// The folder with its first files, or a continued run's.
+  [[nodiscard]] Recorder start_recording(std::optional<Recorder::Place> resumed_at) const {
+    prepare_folder(folder);
+    Recorder recorder(p, folder, resumed_at);
+    restart.restore("recorder", recorder);
+    options.write_toml(folder / "parameters.toml");
+    return recorder;
+  }
 };
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -200,7 +247,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 /// The plates close in the dynamics.
 template <class Body>
-void run_explicit(const CompressionParameters& p, Body body, Recorder& recorder, int frames) {
+void run_explicit(const Run& run, Body body) {
+  const CompressionParameters& p = run.p;
   const auto is_surface = [R = p.radius](const Point<3>& X) { return X.norm() > R * (1.0 - 1e-9); };
   const RigidPlane plane{.point = {0.0, 0.0, p.radius}, .normal = -Vector3::UnitZ()};
   OnRigid<RepulsiveWall, Moving<RigidPlane>> plate{
@@ -219,8 +267,19 @@ void run_explicit(const CompressionParameters& p, Body body, Recorder& recorder,
                         CentralDifference{.safety = p.safety,
                                           .max_time_step = 1.0 / std::sqrt(rate),
                                           .min_time_step = 20e-12}};  // below it the gel is squeezed out: no end in sight
+  run.restart.restore("plates", p);
+  std::optional<Recorder::Place> resumed_at;
+  if (const auto time = run.restart.resume(simulation)) resumed_at = {*time, *time};
+  Recorder recorder = run.start_recording(resumed_at);
+  run.restart.announce(simulation);
+  RunKeeper keeper(run.restart, run.options, run.folder, [&](StateWriter& writer) {
+    writer.part("plates", p);
+    writer.part("simulation", simulation);
+    writer.part("recorder", recorder);
+  });
   const auto start = std::chrono::steady_clock::now();
-  Progress progress(p.duration);
+  const std::size_t first_step = simulation.steps();
+  Progress progress(p.duration, simulation.time());
   const auto finish = [&](bool completed) {
     progress.finish();
     recorder.write_summary(simulation.template body<0>().size(), static_cast<std::size_t>(simulation.steps()), seconds_since(start),
@@ -233,33 +292,70 @@ void run_explicit(const CompressionParameters& p, Body body, Recorder& recorder,
           recorder.record(s.template body<0>(), s.template particles<0>(), s.time(), p.depth(s.time()), wall.force().z(),
                           wall.energy(), s.ledger());
         }),
-        every(p.duration / frames, [&](auto& s) { recorder.write_frame(s.template body<0>(), s.template particles<0>(), s.time()); }),
-        every_steps(100, [&](auto& s) { progress.update(s.time(), s.steps()); }));
+        every(p.duration / run.frames, [&](auto& s) { recorder.write_frame(s.template body<0>(), s.template particles<0>(), s.time()); }),
+        every_steps(100, [&](auto& s) { progress.update(s.time(), s.steps() - first_step); }),
+        every_steps(1, [&](auto&) { keeper.check(); }));
+  } catch (const Interrupted&) {
+    keeper.save();
+    finish(false);
+    throw;
   } catch (const ComputationError&) {
     finish(false);
     throw;
   }
+  keeper.save();
   finish(true);
   fmt::print("{} steps in {:.1f} s, energy error {:.2g} %\n", simulation.steps(), seconds_since(start),
              100.0 * simulation.ledger().error());
 }
 
+/// How far a run of equilibria is.
+struct LoadSteps {
+  int done = 0;        ///< with the one at rest
+  int iterations = 0;  ///< of Newton's method
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("done", done);
+    archive("iterations", iterations);
+  }
+};
+
 /// One equilibrium after the other, for as many positions of the plates as the history has lines.
 template <class Body>
-void run_static(const CompressionParameters& p, Body body, Recorder& recorder, int frames) {
+void run_static(const Run& run, Body body) {
+  const CompressionParameters& p = run.p;
   const auto is_surface = [R = p.radius](const Point<3>& X) { return X.norm() > R * (1.0 - 1e-9); };
+  const auto depth_of = [&](int k) { return p.radius * p.reduction * k / p.samples; };
+  const auto fraction = [&](int k) { return static_cast<double>(k) / p.samples; };
+  // It is continued behind the last equilibrium: what Newton's method had of the next one is lost, and computed again.
+  LoadSteps steps;
+  run.restart.restore("plates", p);
+  run.restart.restore("load_steps", steps);
+  run.restart.restore("body", body);
+  std::optional<Recorder::Place> resumed_at;
+  if (run.restart.from) {
+    resumed_at = {depth_of(steps.done - 1), fraction(steps.done - 1)};
+    fmt::print("going on behind equilibrium {} of {}\n", steps.done - 1, p.samples);
+  }
+  Recorder recorder = run.start_recording(resumed_at);
+  RunKeeper keeper(run.restart, run.options, run.folder, [&](StateWriter& writer) {
+    writer.part("plates", p);
+    writer.part("load_steps", steps);
+    writer.part("body", body);
+    writer.part("recorder", recorder);
+  });
   const auto start = std::chrono::steady_clock::now();
-  Progress progress(1.0);
-  int iterations = 0;
+  Progress progress(1.0, resumed_at ? resumed_at->frame : 0.0);
   BodyFields fields;
   fields.prepare(body);
   const auto finish = [&](bool completed) {
     progress.finish();
-    recorder.write_summary(body.size(), static_cast<std::size_t>(iterations), seconds_since(start), completed);
+    recorder.write_summary(body.size(), static_cast<std::size_t>(steps.iterations), seconds_since(start), completed);
   };
   try {
-    for (int k = 0; k <= p.samples; ++k) {
-      const double depth = p.radius * p.reduction * k / p.samples;
+    while (steps.done <= p.samples) {
+      const int k = steps.done;
+      const double depth = depth_of(k);
       EnergyLedger energies;
       double force = 0.0, layer = 0.0;
       if (k > 0) {
@@ -267,7 +363,7 @@ void run_static(const CompressionParameters& p, Body body, Recorder& recorder, i
                               OnFacets{OnRigid<>{.law = {.penalty = p.penalty},
                                                  .surface = {.point = {0.0, 0.0, p.radius - depth}, .normal = -Vector3::UnitZ()}},
                                        is_surface});
-        iterations += StaticNewton{.tolerance = 1e-9, .max_iterations = 60}.solve(problem).iterations;
+        steps.iterations += StaticNewton{.tolerance = 1e-9, .max_iterations = 60}.solve(problem).iterations;
         force = problem.reaction(2)[2];  // of the middle plane: as much as the plate's
         layer = energies.surface = problem.term_energy().potential;
         energies.strain = problem.energies().strain_energy;
@@ -275,18 +371,25 @@ void run_static(const CompressionParameters& p, Body body, Recorder& recorder, i
       }
       fields.refresh(body, 0.0);
       recorder.record(body, fields.view(), 0.0, depth, force, layer, energies);
-      if (k * frames / p.samples != (k - 1) * frames / p.samples || k == 0) recorder.write_frame(body, fields.view(), static_cast<double>(k) / p.samples);
-      progress.update(static_cast<double>(k) / p.samples, static_cast<std::uint64_t>(iterations));
+      if (k * run.frames / p.samples != (k - 1) * run.frames / p.samples || k == 0) recorder.write_frame(body, fields.view(), fraction(k));
+      progress.update(fraction(k), static_cast<std::uint64_t>(steps.iterations));
+      ++steps.done;
+      keeper.check();
     }
+  } catch (const Interrupted&) {
+    keeper.save();
+    finish(false);
+    throw;
   } catch (const ComputationError&) {
     finish(false);
     throw;
   }
+  keeper.save();
   finish(true);
-  fmt::print("{} equilibria, {} iterations in {:.1f} s\n", p.samples, iterations, seconds_since(start));
+  fmt::print("{} equilibria, {} iterations in {:.1f} s\n", p.samples, steps.iterations, seconds_since(start));
 }
 
-int run(int argc, char** argv) {
+int compress(int argc, char** argv) {
   CompressionParameters p;
   std::string out = "out/cell_compression";
   int threads = thread_count(), frames = 5;
@@ -294,6 +397,8 @@ int run(int argc, char** argv) {
                   "A cell or an elastic ball between two rigid plates: force against reduction (Zeng and Li, Soft Matter 2012, 8, "
                   "5765, Fig. 4).");
   p.add_to(options);
+  Restart restart;
+  restart.add_to(options);
   options.add("out", &out, "Folder of the results");
   options.add("threads", &threads, Range::between(1, 1024), "Threads");
   options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
@@ -301,11 +406,7 @@ int run(int argc, char** argv) {
   p.validate();
   set_thread_count(threads);
 
-  const auto start_recording = [&] {
-    prepare_folder(std::filesystem::path(out) / "fields");
-    options.write_toml(std::filesystem::path(out) / "parameters.toml");
-    return Recorder(p, out);
-  };
+  const Run run{p, options, restart, out, frames};
   if (p.body == "cell") {
     Body body{"cell",
               p.cloud(),
@@ -314,16 +415,14 @@ int run(int argc, char** argv) {
               Materials{Region{"nucleus", p.nucleus_law()}, Region{"cytoplasm", p.gel()}},
               DirectorField<>{},
               UniformDirector(Vector3::UnitZ())};
-    Recorder recorder = start_recording();
-    run_explicit(p, std::move(body), recorder, frames);
+    run_explicit(run, std::move(body));
   } else {
     Body body{"ball", p.cloud(), Rkpm<3>{.support = p.support}, p.quadrature(),
               Materials{Region{"nucleus", p.nucleus_law()}, Region{"cytoplasm", p.shell_law()}}};
-    Recorder recorder = start_recording();
     if (p.method == "static")
-      run_static(p, std::move(body), recorder, frames);
+      run_static(run, std::move(body));
     else
-      run_explicit(p, std::move(body), recorder, frames);
+      run_explicit(run, std::move(body));
   }
   fmt::print("Results in {}\n", out);
   return 0;
@@ -332,5 +431,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return run_program("cell_compression", [&] { return run(argc, argv); });
+  return run_program("cell_compression", [&] { return compress(argc, argv); });
 }

@@ -94,11 +94,13 @@ class Options {
     insert(std::move(entry));
   }
 
-  /// A text, a path.
+  /// A text, a path. It may be empty if the default is.
   void add(std::string name, std::string* value, std::string help) {
     Entry entry{.name = std::move(name), .help = std::move(help), .type = "TEXT", .kind = Kind::text};
     entry.shown = *value;
-    entry.read = [value](std::string_view text, std::string_view where) { *value = checked_text(text, where); };
+    entry.read = [value, may_be_empty = value->empty()](std::string_view text, std::string_view where) {
+      *value = may_be_empty && text.empty() ? "" : checked_text(text, where);
+    };
     entry.toml = [value] { return toml_text(*value); };
     insert(std::move(entry));
   }

@@ -1,5 +1,6 @@
-"""How a plot.py ends: what its user can mend is one sentence and the exit status 2."""
+"""How a plot.py, or another script that draws, ends: what its user can mend is one sentence and the exit status 2."""
 
+import os
 import sys
 
 
@@ -7,5 +8,5 @@ def run(main):
     try:
         main()
     except (OSError, ValueError, KeyError, IndexError) as error:
-        print(f"plot.py: {error}", file=sys.stderr)
+        print(f"{os.path.basename(sys.argv[0])}: {error}", file=sys.stderr)
         sys.exit(2)

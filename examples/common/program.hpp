@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -14,8 +15,8 @@
 namespace tactoid {
 
 /// Runs `body()` as the whole of a program: its exit status, or a sentence on the error output and the status of the
-/// failure: 2 for what the user can mend before the run (parameters, geometry, files), 3 for a computation that broke, 130 or
-/// 143 for one that SIGINT or SIGTERM has ended.
+/// failure: 2 for what the user can mend (parameters, geometry, files, a full disc), 3 for a computation that broke, 130 or
+/// 143 for one that SIGINT or SIGTERM has ended. A file above the limit of the system (ulimit -f) fails as on a full disc.
 template <class Body>
 int run_program(std::string_view name, const Body& body) {
   const auto report = [&](std::string_view text, int status) {
@@ -23,6 +24,7 @@ int run_program(std::string_view name, const Body& body) {
     fmt::print(stderr, "{}: {}\n", name, text);
     return status;
   };
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return body();
   } catch (const Interrupted& interrupted) {

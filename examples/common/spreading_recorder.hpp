@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <tactoid/tactoid.hpp>
+
+#include <common/frame_series.hpp>
 
 namespace tactoid {
 
@@ -29,17 +29,13 @@ class SpreadingRecorder {
         cutoff_(cutoff),
         history_(folder_ / "history.csv", columns(), resumed_at),
         front_(folder_ / "front.csv", front_columns(), resumed_at),
-        series_(folder_ / "fields.pvd") {
-    prepare_folder(folder_ / "fields");
-    if (resumed_at) series_.keep_until(*resumed_at);
-    else remove_old_frames();
-  }
+        frames_(folder_, {"cell", "substrate"}, resumed_at) {}
 
   /// What the next line and the next frame need; the recorder must have measured once.
   template <class Archive>
   void state(Archive& archive) {
     archive("last", last_);
-    archive("frame", frame_);
+    frames_.state(archive);
     archive.part("gaps", gaps_);
   }
 
@@ -138,9 +134,9 @@ class SpreadingRecorder {
   void write_frame(S& simulation) {
     const Timer timer(seconds_);
     measure(simulation);
-    const std::string number = fmt::format("{:04d}", frame_++);
-    write<0>(simulation, "cell_" + number + ".vtu", gaps_.gaps());
-    write<1>(simulation, "substrate_" + number + ".vtu", {});
+    frames_.next();
+    frames_.add(0, simulation.template body<0>(), simulation.template particles<0>(), simulation.time(), gaps_.gaps());
+    frames_.add(1, simulation.template body<1>(), simulation.template particles<1>(), simulation.time());
   }
 
   /// The final values under the names of the history, what the run took (a continued one: since then, for `steps_taken`), and
@@ -190,34 +186,13 @@ class SpreadingRecorder {
   /// A mean vector over whole rings points along the axis, z.
   [[nodiscard]] static Vector3 in_space(const Vector3& v) { return D == 2 ? Vector3(0.0, 0.0, v[1]) : v; }
 
-  /// The frames of a former run in the same folder.
-  void remove_old_frames() const {
-    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "fields")) {
-      const std::string name = entry.path().filename().string();
-      const std::size_t digits = name.find_first_of("0123456789"), dot = name.find(".vtu");
-      if (dot == std::string::npos || dot + 4 != name.size() || digits >= dot) continue;
-      const std::string_view body = std::string_view(name).substr(0, digits);
-      if ((body == "cell_" || body == "substrate_") && name.find_first_not_of("0123456789", digits) == dot)
-        std::filesystem::remove(entry.path());
-    }
-  }
-
-  template <std::size_t B, class S>
-  void write(S& simulation, const std::string& name, std::span<const double> gaps) {
-    auto& body = simulation.template body<B>();
-    write_body_frame(folder_ / "fields" / name, body, simulation.template particles<B>(), stress_fields(body),
-                     simulation.time(), gaps);
-    series_.add(simulation.time(), "fields/" + name, body.name());
-  }
-
   static constexpr int front_modes = 16;
   std::filesystem::path folder_;
   double cutoff_;
   HistoryWriter history_, front_;
-  PvdSeries series_;
+  FrameSeries frames_;
   SurfaceGaps<D> gaps_;
   std::vector<double> last_;
-  int frame_ = 0;
   double seconds_ = 0.0;  // spent in observing and writing
 };
 

@@ -8,13 +8,12 @@
 
 #include <fmt/format.h>
 
-#include <tactoid/output/checkpoint.hpp>
 #include <tactoid/tactoid.hpp>
 
 #include <common/options.hpp>
+#include <common/run_keeper.hpp>
 #include <common/spreading_case.hpp>
 #include <common/spreading_recorder.hpp>
-#include <common/stop_signal.hpp>
 
 namespace tactoid {
 
@@ -25,21 +24,10 @@ struct SpreadingRun {
   int frames = 20;             ///< for ParaView
   int samples = 200;           ///< lines of the history
   double energy_limit = 0.1;   ///< relative error of the energy balance that stops the run
-  double checkpoint_every = 600.0;          ///< s of wall time; 0: no checkpoint at all
-  std::optional<Checkpoint> restart = {};   ///< where the run goes on
+  Restart restart = {};        ///< whether it goes on with a former run, and how often it is kept
 
   void add_to(Options& options) {
-    options.add_source(
-        "restart", "FILE.h5",
-        [this, &options](const std::string& file) {
-          restart = read_checkpoint(file);
-          if (restart->program != options.program())
-            throw FileError(fmt::format("{} is a checkpoint of {}, not of {}.", in_quotes(file), restart->program, options.program()));
-          return restart->parameters;
-        },
-        "Go on where this checkpoint is, with its options");
-    options.add_quantity("checkpoint-every", &checkpoint_every, Quantity::time, Range::non_negative(),
-                         "Wall time between two checkpoints, out/checkpoint.h5; 0: none");
+    restart.add_to(options);
     options.add("out", &out, "Folder of the results");
     options.add("threads", &threads, Range::between(1, 1024), "Threads");
     options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
@@ -56,33 +44,19 @@ struct SpreadingRun {
     const auto start = std::chrono::steady_clock::now();
     auto simulation = spreading.simulation();
 
-    std::optional<double> resumed_at;
-    if (restart) {
-      StateReader(restart->state).part("simulation", simulation);
-      resumed_at = simulation.time();
-      if (p.end_time < *resumed_at)
-        throw ParameterError(fmt::format("--end-time = {:g} s is not allowed: the checkpoint is at {:g} s.", p.end_time, *resumed_at));
-    }
+    const std::optional<double> resumed_at = restart.resume(simulation);
+    Restart::require_end_after(resumed_at, p.end_time);
     prepare_folder(out);
     SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range, resumed_at);
-    if (restart) {
-      recorder.measure(simulation);
-      StateReader(restart->state).part("recorder", recorder);
-      fmt::print("going on from t = {:.6g} s, step {}\n", simulation.time(), simulation.steps());
-    }
+    if (resumed_at) recorder.measure(simulation);
+    restart.restore("recorder", recorder);
+    restart.announce(simulation);
     options.write_toml(std::filesystem::path(out) / "parameters.toml");
     const std::size_t first_step = simulation.steps();
-    const StopSignal stop;
-    auto saved = start;
-    const auto save = [&](auto& s) {
-      if (checkpoint_every == 0.0) return;
-      Checkpoint checkpoint{options.program(), options.toml(), {}};
-      StateWriter writer(checkpoint.state);
-      writer.part("simulation", s);
+    RunKeeper keeper(restart, options, out, [&](StateWriter& writer) {
+      writer.part("simulation", simulation);
       writer.part("recorder", recorder);
-      write_checkpoint(std::filesystem::path(out) / "checkpoint.h5", checkpoint);
-      saved = std::chrono::steady_clock::now();
-    };
+    });
     Progress progress(p.end_time, simulation.time());
     fmt::print("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {} threads\n",
                simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
@@ -110,19 +84,16 @@ struct SpreadingRun {
                        progress.update(s.time(), s.steps() - first_step);
                        watch_energy(s);
                      }),
-                     every_steps(1, [&](auto& s) {  // the last one: the others have seen the step
-                       stop.check();
-                       if (std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() > checkpoint_every) save(s);
-                     }));
+                     every_steps(1, [&](auto&) { keeper.check(); }));  // the last one: the others have seen the step
     } catch (const Interrupted&) {
-      save(simulation);
+      keeper.save();
       finish(false);
       throw;
     } catch (const ComputationError&) {
       finish(false);
       throw;
     }
-    save(simulation);
+    keeper.save();
     finish(true);
     fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps() - first_step,
                seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);

@@ -6,14 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <tactoid/input/vtu_zlib.hpp>
 #include <tactoid/tactoid.hpp>
 
+#include "common/frame_series.hpp"
 #include "common/options.hpp"
 #include "common/program.hpp"
+#include "common/run_keeper.hpp"
 
 namespace {
 
@@ -46,6 +49,7 @@ int main(int argc, char** argv) {
     std::string out = "out/own_mesh";
     double nucleus = 15e3, cytoplasm = 1.5e3, poisson = 0.45, speed = 0.3, end_time = 20e-6;
     int threads = thread_count(), frames = 20;
+    Restart restart;
     Options options("own_mesh", "A body from a file, with the regions nucleus and cytoplasm, falls on a rigid plate.");
     options.add("mesh", &input.mesh, "File of Gmsh (.msh, version 4.1), of VTK (.vtu): hexahedra or tetrahedra; or a table of points (.csv)");
     options.add("region-array", &input.region_array, "Cell array with the regions in a VTU file; empty: region or gmsh:physical");
@@ -58,6 +62,7 @@ int main(int argc, char** argv) {
     options.add("poisson", &poisson, Range::inside(0.0, 0.5), "Poisson's ratio of both");
     options.add_quantity("speed", &speed, Quantity::velocity, Range::non_negative(), "Speed of the fall");
     options.add_quantity("end-time", &end_time, Quantity::time, Range::positive(), "Simulated time");
+    restart.add_to(options);
     options.add("out", &out, "Folder of the results");
     options.add("threads", &threads, Range::between(1, 1024), "Threads");
     options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
@@ -79,23 +84,35 @@ int main(int argc, char** argv) {
                           Boundaries{on<0>(RigidPlate{.point = {0.0, 0.0, bottom - 0.05 * input.scale}, .law = RepulsiveWall{.penalty = 1e11}})},
                           CentralDifference{.safety = 0.5}};
 
+    const std::optional<double> resumed_at = restart.resume(simulation);
+    Restart::require_end_after(resumed_at, end_time);
     const std::filesystem::path folder = out;
-    prepare_folder(folder / "fields");
+    prepare_folder(folder);
+    HistoryWriter history(folder / "history.csv", {"time", "height", "force", "kinetic_energy", "strain_energy", "energy_error"}, resumed_at);
+    FrameSeries series(folder, {"cell"}, resumed_at);
+    restart.restore("series", series);
+    restart.announce(simulation);
     options.write_toml(folder / "parameters.toml");
-    HistoryWriter history(folder / "history.csv", {"time", "height", "force", "kinetic_energy", "strain_energy", "energy_error"});
-    PvdSeries series(folder / "fields.pvd");
-    int frame = 0;
-    simulation.run(end_time, every(end_time / 200, [&](auto& s) {
-                     const EnergyLedger& e = s.ledger();
-                     history.write(std::array{s.time(), motion(s.template particles<0>()).center_of_mass[2] - bottom,
-                                              -s.template boundary<0>().force().z(), e.kinetic, e.strain + e.stabilization, e.error()});
-                   }),
-                   every(end_time / frames, [&](auto& s) {
-                     auto& body = s.template body<0>();
-                     const std::string name = fmt::format("fields/cell_{:04d}.vtu", frame++);
-                     write_body_frame(folder / name, body, s.template particles<0>(), stress_fields(body), s.time());
-                     series.add(s.time(), name, body.name());
-                   }));
+    RunKeeper keeper(restart, options, folder, [&](StateWriter& writer) {
+      writer.part("simulation", simulation);
+      writer.part("series", series);
+    });
+    try {
+      simulation.run(end_time, every(end_time / 200, [&](auto& s) {
+                       const EnergyLedger& e = s.ledger();
+                       history.write(std::array{s.time(), motion(s.template particles<0>()).center_of_mass[2] - bottom,
+                                                -s.template boundary<0>().force().z(), e.kinetic, e.strain + e.stabilization, e.error()});
+                     }),
+                     every(end_time / frames, [&](auto& s) {
+                       series.next();
+                       series.add(0, s.template body<0>(), s.template particles<0>(), s.time());
+                     }),
+                     every_steps(1, [&](auto&) { keeper.check(); }));
+    } catch (const Interrupted&) {
+      keeper.save();
+      throw;
+    }
+    keeper.save();
     fmt::print("{} steps, energy error {:.2g} %; results in {}\n", simulation.steps(), 100.0 * simulation.ledger().error(), out);
     return 0;
   });

@@ -8,10 +8,13 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
+
+import continued_run
 
 PROGRAM = ""
 
@@ -22,13 +25,15 @@ class Bar(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, True)
 
     def run_program(self, *arguments, status=0):
-        result = subprocess.run([PROGRAM, *arguments, "--out", str(self.folder / "out")], capture_output=True, text=True,
-                                timeout=300, env=dict(os.environ, OMP_WAIT_POLICY="passive"))
+        if "--out" not in arguments:
+            arguments = (*arguments, "--out", "out")
+        result = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                                env=dict(os.environ, OMP_WAIT_POLICY="passive"))
         self.assertEqual(result.returncode, status, result.stdout + result.stderr)
         return result
 
-    def summary(self):
-        return json.loads((self.folder / "out" / "summary.json").read_text())
+    def summary(self, out="out"):
+        return json.loads((self.folder / out / "summary.json").read_text())
 
     def test_the_uniform_bar_loses_what_it_must(self):
         self.run_program("--frequency", "1MHz", "--cells", "20")
@@ -44,7 +49,7 @@ class Bar(unittest.TestCase):
         area = sum(0.5 * (a["stress"] + b["stress"]) * (b["strain"] - a["strain"]) for a, b in zip(rows, rows[1:]))
         self.assertAlmostEqual(area / summary["uniform_loss"], 1.0, delta=2e-3)
         self.assertEqual(sorted(os.listdir(self.folder / "out")),
-                         ["fields", "fields.pvd", "history.csv", "parameters.toml", "summary.json"])
+                         ["checkpoint.h5", "fields", "fields.pvd", "history.csv", "parameters.toml", "summary.json"])
         self.assertEqual(len(os.listdir(self.folder / "out" / "fields")), 5)
 
     def test_activity_moves_the_loop_by_its_stress(self):
@@ -61,6 +66,39 @@ class Bar(unittest.TestCase):
         summary = self.summary()
         self.assertAlmostEqual(summary["dissipated"] / summary["uniform_loss"], 1.0, delta=0.01)
         self.assertLess(summary["energy_error"], 1e-4)
+
+    def test_a_run_that_is_ended_and_continued_is_the_whole_run(self):
+        motion = ["--frequency", "100kHz", "--cells", "200", "--frames", "8", "--method", "inertial"]
+        self.run_program(*motion, "--out", "whole")
+        whole = self.summary("whole")
+        # In the cycles before the recorded one (the history has its head only), and in that one.
+        continued_run.interrupt(self, PROGRAM, signal.SIGTERM, 1, *motion, "--out", "parts")
+        self.assertEqual((self.folder / "parts" / "history.csv").read_bytes().count(b"\n"), 1)
+        continued_run.interrupt(self, PROGRAM, signal.SIGINT, 100, "--restart", "parts/checkpoint.h5", "--out", "parts")
+        self.assertNotIn("loss", self.summary("parts"))
+        shutil.copy(self.folder / "parts" / "checkpoint.h5", self.folder / "middle.h5")
+        said = self.run_program("--restart", "parts/checkpoint.h5", "--threads", "2", "--out", "parts").stdout
+        self.assertRegex(said, r"going on from t = \S+ s, step \d+")
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        parts = self.summary("parts")
+        self.assertEqual({**whole, "threads": 2}, parts)
+        # From the middle of the recorded cycle again, over the lines and frames that are there by now.
+        self.run_program("--restart", "middle.h5", "--threads", "2", "--out", "parts")
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        self.assertEqual(self.summary("parts"), parts)
+        # A finished run goes on to the same end.
+        self.run_program("--restart", "parts/checkpoint.h5", "--threads", "2", "--out", "parts")
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        self.assertEqual(self.summary("parts"), parts)
+        # Another motion is another run.
+        for option, value in (("cycles", "5"), ("frequency", "1MHz"), ("amplitude", "10um")):
+            result = self.run_program("--restart", "parts/checkpoint.h5", f"--{option}", value, "--out", "new", status=2)
+            self.assertEqual(result.stderr, f'bar_hysteresis: The saved state is of another simulation: "motion/{option}" differs.\n')
+        self.assertFalse((self.folder / "new").exists())
+
+    def test_no_checkpoint_where_none_is_wanted(self):
+        self.run_program("--frequency", "10MHz", "--cells", "10", "--checkpoint-every", "0s")
+        self.assertFalse((self.folder / "out" / "checkpoint.h5").exists())
 
     def test_bad_input(self):
         result = self.run_program("--amplitude", "100um", status=2)

@@ -8,10 +8,13 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
+
+import continued_run
 
 PROGRAM = ""
 SMALL = ["--resolution", "0.4", "--frames", "2", "--threads", "1"]
@@ -61,7 +64,7 @@ class Compression(unittest.TestCase):
         self.assertAlmostEqual(work / history["strain_energy"][-1], 1.0, delta=0.02)
         for out, frames in (("static", 3), ("slow", 3)):
             self.assertEqual(sorted(os.listdir(self.folder / out)),
-                             ["fields", "fields.pvd", "history.csv", "parameters.toml", "summary.json"])
+                             ["checkpoint.h5", "fields", "fields.pvd", "history.csv", "parameters.toml", "summary.json"])
             self.assertEqual(len(os.listdir(self.folder / out / "fields")), frames)
             summary = json.loads((self.folder / out / "summary.json").read_text())
             self.assertTrue(summary["completed"])
@@ -76,6 +79,44 @@ class Compression(unittest.TestCase):
         self.assertGreater(shell, whole / 9.0)
         self.assertLess(cell, shell)
         self.assertGreater(cell, 0.0)
+
+    def check_continued(self, expected, refused, *run):
+        """Ended twice and continued on other threads it is the whole run."""
+        self.run_program("whole", *run)
+        lines = (self.folder / "whole" / "history.csv").read_bytes().count(b"\n")
+        small = [*SMALL, "--reduction", "0.3", *run]
+        continued_run.interrupt(self, PROGRAM, signal.SIGTERM, lines // 4, *small, "--out", "parts")
+        shutil.copy(self.folder / "parts" / "checkpoint.h5", self.folder / "early.h5")
+        restart = ["--restart", "parts/checkpoint.h5", "--threads"]
+        continued_run.interrupt(self, PROGRAM, signal.SIGINT, lines // 2, *restart, "2", "--out", "parts")
+        result = subprocess.run([PROGRAM, *restart, "1", "--out", "parts"], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                                env=continued_run.ENVIRONMENT)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertRegex(result.stdout, expected)
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        summaries = [json.loads((self.folder / out / "summary.json").read_text()) for out in ("whole", "parts")]
+        for summary in summaries:
+            del summary["wall_seconds"]
+        self.assertEqual(*summaries)
+        # From the first place again, over the lines and frames that are there by now.
+        subprocess.run([PROGRAM, "--restart", "early.h5", "--threads", "2", "--out", "parts"], cwd=self.folder, check=True,
+                       stdout=subprocess.DEVNULL, timeout=300, env=continued_run.ENVIRONMENT)
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        # The plates move as they did.
+        for option, value in refused:
+            result = subprocess.run([PROGRAM, *restart, "1", f"--{option}", value, "--out", "new"], cwd=self.folder, capture_output=True,
+                                    text=True, timeout=300, env=continued_run.ENVIRONMENT)
+            self.assertEqual((result.returncode, result.stderr), (
+                2, f'cell_compression: The saved state is of another simulation: "plates/{option}" differs.\n'))
+        self.assertFalse((self.folder / "new").exists())
+
+    def test_dynamics_that_are_ended_and_continued_are_the_whole_run(self):
+        self.check_continued(r"going on from t = \S+ s, step \d+", [("duration", "1ms"), ("reduction", "0.4"), ("ramp", "0.2")],
+                             "--body", "cell", "--duration", "50us", "--samples", "50")
+
+    def test_equilibria_that_are_ended_and_continued_are_the_whole_run(self):
+        self.check_continued(r"going on behind equilibrium \d+ of 20", [("samples", "10"), ("reduction", "0.4")],
+                             "--body", "core-shell", "--method", "static", "--samples", "20")
 
     def test_bad_input(self):
         for arguments, says in (

@@ -8,12 +8,15 @@ import csv
 import os
 import pathlib
 import shutil
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 import zlib
+
+import continued_run
 
 PROGRAM = ""
 
@@ -77,7 +80,9 @@ class OwnMesh(unittest.TestCase):
 
     def run_program(self, text, *arguments, status=0, name="body.msh"):
         (self.folder / name).write_text(text)
-        result = subprocess.run([PROGRAM, "--mesh", name, "--threads", "1", "--out", "out", *arguments], cwd=self.folder,
+        for option, value in (("--threads", "1"), ("--out", "out")):
+            arguments = arguments if option in arguments else (*arguments, option, value)
+        result = subprocess.run([PROGRAM, "--mesh", name, *arguments], cwd=self.folder,
                                 capture_output=True, text=True, timeout=300, env=dict(os.environ, OMP_WAIT_POLICY="passive"))
         self.assertEqual(result.returncode, status, result.stdout + result.stderr)
         return result
@@ -90,6 +95,23 @@ class OwnMesh(unittest.TestCase):
         self.assertGreater(max(row["force"] for row in rows), 0.0)
         self.assertLess(rows[-1]["energy_error"], 0.01)
         self.assertEqual(len(os.listdir(self.folder / "out" / "fields")), 3)
+
+    def test_a_run_that_is_ended_and_continued_is_the_whole_run(self):
+        fall = ["--mesh", "body.msh", "--scale", "5um", "--speed", "0.05m/s", "--end-time", "12us", "--frames", "6"]
+        self.run_program(block(8), *fall[2:], "--out", "whole")
+        continued_run.interrupt(self, PROGRAM, signal.SIGTERM, 40, *fall, "--threads", "1", "--out", "parts")
+        shutil.copy(self.folder / "parts" / "checkpoint.h5", self.folder / "early.h5")
+        continued_run.interrupt(self, PROGRAM, signal.SIGINT, 90, "--restart", "parts/checkpoint.h5", "--threads", "1", "--out", "parts")
+        self.run_program(block(8), "--restart", "parts/checkpoint.h5", "--threads", "2", "--out", "parts")
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        # From the first place again, over the lines and frames that are there by now.
+        self.run_program(block(8), "--restart", "early.h5", "--threads", "1", "--out", "parts")
+        continued_run.assert_same(self, "whole", "parts", "history.csv")
+        result = self.run_program(block(8), "--restart", "parts/checkpoint.h5", "--end-time", "1us", "--out", "new", status=2)
+        self.assertEqual(result.stderr, "own_mesh: --end-time = 1e-06 s is not allowed: the checkpoint is at 1.2e-05 s.\n")
+        result = self.run_program(block(4), "--restart", "parts/checkpoint.h5", "--out", "new", status=2)
+        self.assertIn("is of another simulation", result.stderr)
+        self.assertFalse((self.folder / "new").exists())
 
     def test_a_grid_of_vtk_is_the_same_block(self):
         short = ("--scale", "5um", "--end-time", "10ns", "--frames", "1")

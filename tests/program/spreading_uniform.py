@@ -8,16 +8,18 @@ import json
 import math
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import xml.etree.ElementTree as xml
 
 import h5py
+
+import continued_run
 
 PROGRAM = ""
 COLUMNS = (
@@ -268,27 +270,12 @@ class Restart(Case):
     RUN = ["--gap", "1nm", "--resolution", "0.4", "--end-time", "0.5us", "--frames", "5", "--samples", "50", "--preset", "elastic"]
 
     def interrupt(self, sent, lines, *arguments):
-        """A run that is ended by a signal as soon as its history has so many lines."""
-        with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              env=dict(os.environ, OMP_WAIT_POLICY="passive", LC_ALL="C")) as process:
-            history = self.folder / arguments[-1] / "history.csv"
-            while not history.exists() or history.read_bytes().count(b"\n") < lines:
-                self.assertIsNone(process.poll(), "the run ended before it could be interrupted")
-                time.sleep(0.005)
-            process.send_signal(sent)
-            error = process.communicate(timeout=60)[1]
-        self.assertEqual(process.returncode, 128 + sent, error)
-        self.assertEqual(error, f"spreading_uniform: ended by {sent.name}.\n")
-        summary = json.loads((self.folder / arguments[-1] / "summary.json").read_text())
-        self.assertFalse(summary["completed"])
+        continued_run.interrupt(self, PROGRAM, sent, lines, *arguments)
+        self.assertFalse(json.loads((self.folder / arguments[-1] / "summary.json").read_text())["completed"])
         self.check_frames(self.folder / arguments[-1])
 
     def assert_same(self, one, two):
-        for name in ("history.csv", "front.csv", "fields.pvd"):
-            self.assertEqual((self.folder / one / name).read_bytes(), (self.folder / two / name).read_bytes(), name)
-        self.assertEqual(set(os.listdir(self.folder / one / "fields")), set(os.listdir(self.folder / two / "fields")))
-        for name in os.listdir(self.folder / one / "fields"):
-            self.assertEqual((self.folder / one / "fields" / name).read_bytes(), (self.folder / two / "fields" / name).read_bytes(), name)
+        continued_run.assert_same(self, one, two, "history.csv", "front.csv")
 
     def test_a_run_that_is_ended_twice_and_continued_is_the_whole_run(self):
         self.succeed(*self.RUN, "--threads", "1", "--out", "whole")
@@ -351,6 +338,51 @@ class Restart(Case):
     def test_no_checkpoint_where_none_is_wanted(self):
         self.succeed(*SMALL, "--checkpoint-every", "0s", "--out", "out")
         self.assertFalse((self.folder / "out" / "checkpoint.h5").exists())
+
+
+class FullDisc(Case):
+    """One sentence, and everything that was written before is whole."""
+
+    RUN = ["--gap", "1nm", "--resolution", "0.3", "--end-time", "0.1us", "--frames", "25", "--samples", "200", "--threads", "1"]
+
+    def check_failed(self, result, out, reason):
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertRegex(result.stderr, rf'^spreading_uniform: Cannot write "{out}/[a-z_0-9./]+": {reason}\.\n$')
+        for name in ("history.csv", "front.csv"):
+            self.assertTrue((self.folder / out / name).read_bytes().endswith(b"\n"))
+            head, rows = read_history(self.folder / out / name)
+            self.assertGreater(len(rows), 2)
+            self.assertEqual({len(row) for row in rows}, {len(head)})
+        named = [entry.get("file") for entry in xml.parse(self.folder / out / "fields.pvd").getroot().iter("DataSet")]
+        self.assertGreater(len(named), 2)
+        for name in [*named, *("fields/" + name for name in os.listdir(self.folder / out / "fields"))]:
+            self.assertTrue((self.folder / out / name).read_bytes().endswith(b"</VTKFile>\n"), name)
+        self.assertEqual([path for path in (self.folder / out).rglob("*.part")], [])
+        self.assertFalse((self.folder / out / "summary.json").exists())
+
+    def test_a_run_on_a_disc_that_becomes_full_ends_and_can_be_continued(self):
+        disc = self.folder / "disc"
+        disc.mkdir()
+        mount = ["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(disc)]
+        if shutil.which("mount") is None or subprocess.run(mount, capture_output=True).returncode != 0:
+            self.skipTest("no disc of its own can be mounted here")
+        self.addCleanup(subprocess.run, ["umount", str(disc)], check=True)
+        self.check_failed(run(*self.RUN, "--checkpoint-every", "1ms", "--out", "disc/out", folder=self.folder), "disc/out",
+                          "No space left on device")
+        # With room again it goes on, and is the run that had room from the start.
+        subprocess.run(["mount", "-o", "remount,size=50m", str(disc)], check=True)
+        self.succeed(*self.RUN, "--out", "whole")
+        self.succeed("--restart", "disc/out/checkpoint.h5")
+        continued_run.assert_same(self, "whole", "disc/out", "history.csv", "front.csv")
+
+    def test_a_file_that_may_not_grow_ends_the_run(self):
+        # The history would have 450 kB at its end; a frame has less than 100 kB.
+        grown = [*self.RUN[:-4], "--samples", "1000", "--threads", "1", "--checkpoint-every", "0s"]
+        result = subprocess.run([PROGRAM, *grown, "--out", "out"], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                                env=continued_run.ENVIRONMENT, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (150000, 150000)))
+        self.check_failed(result, "out", "File too large")
+        size = (self.folder / "out" / "history.csv").stat().st_size
+        self.assertTrue(149000 < size <= 150000, size)
 
 
 class BrokenRun(Case):

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include <tactoid/core/errors.hpp>
@@ -21,13 +26,14 @@
 namespace tactoid {
 
 /// A table of numbers over time (.csv): a line of column names, then one line per call, each on the disc before the
-/// call returns. Numbers are written in the shortest form that reads back as the same double.
+/// call returns, or, where the disc is full, not at all. Numbers are written in the shortest form that reads back as the same double.
 class HistoryWriter {
  public:
-  /// Begins the file anew; or goes on with it, if it is there, behind the last line whose first value is at most `keep_until`:
-  /// what a run wrote before the state from which it is continued. Throws FileError; ParameterError for a column without a
-  /// name, with a comma, or named twice, and where the file has other columns.
-  HistoryWriter(std::filesystem::path path, std::vector<std::string> columns, std::optional<double> keep_until = {})
+  /// Begins the file anew; or goes on with it, if it is there, behind the last line whose value in the column `key` (the first one
+  /// if empty; a time, which grows from line to line) is at most `keep_until`: what a run wrote before the state from which it is
+  /// continued. Throws FileError; ParameterError for a column without a name, with a comma, or named twice, for a `key` that is no
+  /// column, and where the file has other columns.
+  HistoryWriter(std::filesystem::path path, std::vector<std::string> columns, std::optional<double> keep_until = {}, const std::string& key = "")
       : path_(std::move(path)), columns_(std::move(columns)) {
     std::string head;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -39,10 +45,14 @@ class HistoryWriter {
           throw ParameterError(fmt::format("HistoryWriter: two columns have the name {}.", in_quotes(name)));
       head += (i == 0 ? "" : ",") + name;
     }
+    const auto at = key.empty() ? columns_.begin() : std::find(columns_.begin(), columns_.end(), key);
+    if (at == columns_.end() && !key.empty())
+      throw ParameterError(fmt::format("HistoryWriter: {} is no column of {}.", in_quotes(key), in_quotes(path_.string())));
     // What is kept is never lost: the file is then replaced as a whole.
-    if (keep_until) write_file(path_, head + '\n' + lines_until(head, *keep_until));
+    if (keep_until) write_file(path_, head + '\n' + lines_until(head, at - columns_.begin(), *keep_until));
     file_.reset(std::fopen(path_.c_str(), keep_until ? "ab" : "wb"));
     if (!file_) detail::fail_file("write", path_, errno);
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // nothing of a line that failed waits to be written later
     if (!keep_until) put(head + '\n');
   }
 
@@ -60,7 +70,7 @@ class HistoryWriter {
   }
 
  private:
-  [[nodiscard]] std::string lines_until(const std::string& head, double last) const {
+  [[nodiscard]] std::string lines_until(const std::string& head, std::ptrdiff_t column, double last) const {
     std::error_code none;
     if (!std::filesystem::exists(path_, none) || std::filesystem::file_size(path_, none) == 0) return "";
     std::ifstream file(path_, std::ios::binary);
@@ -69,15 +79,27 @@ class HistoryWriter {
     if (!std::getline(file, line) || line != head)
       throw ParameterError(fmt::format("HistoryWriter: {} has other columns, and cannot be continued.", in_quotes(path_.string())));
     while (std::getline(file, line) && !file.eof()) {  // a line without its end was cut off
-      double first = 0.0;
-      if (std::from_chars(line.data(), line.data() + line.size(), first).ec != std::errc{} || first > last) break;
+      const char *at = line.data(), *const end = at + line.size();
+      for (std::ptrdiff_t c = 0; c < column; ++c) {
+        at = std::find(at, end, ',');
+        if (at != end) ++at;
+      }
+      double value = 0.0;
+      if (std::from_chars(at, end, value).ec != std::errc{} || value > last) break;
       kept += line + '\n';
     }
     return kept;
   }
   void put(const std::string& line) {
-    if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size() || std::fflush(file_.get()) != 0)
-      detail::fail_file("write", path_, errno);
+    const int descriptor = ::fileno(file_.get());
+    struct ::stat before {};
+    const bool known = ::fstat(descriptor, &before) == 0 && S_ISREG(before.st_mode);
+    if (std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size()) return;
+    const int error = errno;
+    if (known) {
+      [[maybe_unused]] const int cut = ::ftruncate(descriptor, before.st_size);  // should it fail, too, a part of a line stays
+    }
+    detail::fail_file("write", path_, error);
   }
 
   struct Close {

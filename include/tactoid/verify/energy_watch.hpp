@@ -14,7 +14,8 @@ namespace tactoid {
 ///   simulation.run(1_ms, watch);
 ///   watch.largest_error < 1e-3
 ///
-/// A defect that is not a number counts as infinite. May be given to several runs of a simulation.
+/// A defect that is not a number counts as infinite. May be given to several runs of a simulation. A run that is continued knows
+/// of the former one's errors if the watch was saved and restored (core/state.hpp) with the simulation.
 struct EnergyWatch {
   double largest_error = 0.0;   ///< of EnergyLedger::error(): |defect| over the largest work done until then
   double largest_defect = 0.0;  ///< |total + dissipated − external work − initial|, J
@@ -24,6 +25,11 @@ struct EnergyWatch {
   /// Looks at the ledger of the first state.
   template <class S>
   void begin(S& simulation) {
+    after_step(simulation);
+  }
+  /// Looks at the ledger of the state that was restored: of a watch that was restored, too, nothing changes.
+  template <class S>
+  void resume(S& simulation) {
     after_step(simulation);
   }
   /// Looks at the ledger.
@@ -45,6 +51,15 @@ struct EnergyWatch {
   template <class S>
   [[nodiscard]] double next_time(const S&) const {
     return std::numeric_limits<double>::infinity();
+  }
+
+  /// For checkpoints: all of it.
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("largest_error", largest_error);
+    archive("largest_defect", largest_defect);
+    archive("time", time);
+    archive.part("last", last);
   }
 
   /// |defect| over the largest work of the whole run: 0 at the start, where the error of the ledger is 0/0.
