@@ -40,6 +40,12 @@ struct Gradient {
   sum.column[2] += gradient[2] * f;
 }
 
+/// The same for f in memory.
+[[gnu::always_inline]] inline void add_outer(Gradient& sum, const double* f, const double (&gradient)[3]) {
+  const Quad value = quad(f);
+  add_outer(sum, value, gradient);
+}
+
 /// In a meridian section the third column of a gathered gradient is f/R. The parts of ∂f/∂X around the axis, where the unit
 /// vectors turn, are made of it: (−f_θ, 0, f_R)/R, with the third component θ around the axis.
 inline void turn_around_axis(Gradient& df) {
@@ -57,8 +63,8 @@ inline void gather(std::span<const TableEntry> row, const Vector4* f, Gradient& 
   Gradient even, odd;
   for (std::size_t k = 0; k < row.size(); k += 2) {
     const TableEntry &a = row[k], &b = row[k + 1];
-    add_outer(even, quad(f[a.particle].data()), a.gradient);
-    add_outer(odd, quad(f[b.particle].data()), b.gradient);
+    add_outer(even, f[a.particle].data(), a.gradient);
+    add_outer(odd, f[b.particle].data(), b.gradient);
   }
   for (int K = 0; K < 3; ++K) df.column[K] = even.column[K] + odd.column[K];
 }
@@ -68,8 +74,8 @@ inline void gather(std::span<const TableEntry> row, const Motion* motion, Gradie
   Gradient u, v;
   for (const TableEntry& entry : row) {
     const Motion& m = motion[entry.particle];
-    add_outer(u, quad(m.displacement), entry.gradient);
-    add_outer(v, quad(m.velocity), entry.gradient);
+    add_outer(u, m.displacement, entry.gradient);
+    add_outer(v, m.velocity, entry.gradient);
   }
   du = u, dv = v;
 }
@@ -80,9 +86,9 @@ inline void gather(std::span<const TableEntry> row, const Motion* motion, const 
   Gradient u, v, h;
   for (const TableEntry& entry : row) {
     const Motion& m = motion[entry.particle];
-    add_outer(u, quad(m.displacement), entry.gradient);
-    add_outer(v, quad(m.velocity), entry.gradient);
-    add_outer(h, quad(director[entry.particle].data()), entry.gradient);
+    add_outer(u, m.displacement, entry.gradient);
+    add_outer(v, m.velocity, entry.gradient);
+    add_outer(h, director[entry.particle].data(), entry.gradient);
   }
   du = u, dv = v, dh = h;
 }
