@@ -229,7 +229,7 @@ int run(int argc, char** argv) {
     summary.set("threads", thread_count()).set("version", version).set("completed", completed);
     summary.write(folder / "summary.json");
   };
-  try {
+  keeper.run([&] {
     if (!recorded.begun) {
       simulation.run(recorded_from, show, keep);
       recorded.begun = true;
@@ -237,16 +237,7 @@ int run(int argc, char** argv) {
       recorded.dissipated_before = simulation.ledger().dissipated;
     }
     simulation.run(end, every(p.period() / p.samples, record), every(p.period() / frames, write_frame), show, keep);
-  } catch (const Interrupted&) {
-    keeper.save();
-    finish(false);
-    throw;
-  } catch (const ComputationError&) {
-    finish(false);
-    throw;
-  }
-  keeper.save();
-  finish(true);
+  }, finish);
   fmt::print("{} steps; loss per cycle and volume {:.6g} Pa, of the uniform bar exactly {:.6g} Pa; results in {}\n",
              simulation.steps(), (simulation.ledger().external_work - recorded.work_before) / L, p.uniform_loss(), out);
   return 0;

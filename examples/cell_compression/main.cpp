@@ -285,7 +285,7 @@ void run_explicit(const Run& run, Body body) {
     recorder.write_summary(simulation.template body<0>().size(), static_cast<std::size_t>(simulation.steps()), seconds_since(start),
                            completed);
   };
-  try {
+  keeper.run([&] {
     simulation.run(
         p.duration, every(p.duration / p.samples, [&](auto& s) {
           auto& wall = s.template boundary<0>().term;
@@ -295,16 +295,7 @@ void run_explicit(const Run& run, Body body) {
         every(p.duration / run.frames, [&](auto& s) { recorder.write_frame(s.template body<0>(), s.template particles<0>(), s.time()); }),
         every_steps(100, [&](auto& s) { progress.update(s.time(), s.steps() - first_step); }),
         every_steps(1, [&](auto&) { keeper.check(); }));
-  } catch (const Interrupted&) {
-    keeper.save();
-    finish(false);
-    throw;
-  } catch (const ComputationError&) {
-    finish(false);
-    throw;
-  }
-  keeper.save();
-  finish(true);
+  }, finish);
   fmt::print("{} steps in {:.1f} s, energy error {:.2g} %\n", simulation.steps(), seconds_since(start),
              100.0 * simulation.ledger().error());
 }
@@ -352,7 +343,7 @@ void run_static(const Run& run, Body body) {
     progress.finish();
     recorder.write_summary(body.size(), static_cast<std::size_t>(steps.iterations), seconds_since(start), completed);
   };
-  try {
+  keeper.run([&] {
     while (steps.done <= p.samples) {
       const int k = steps.done;
       const double depth = depth_of(k);
@@ -376,16 +367,7 @@ void run_static(const Run& run, Body body) {
       ++steps.done;
       keeper.check();
     }
-  } catch (const Interrupted&) {
-    keeper.save();
-    finish(false);
-    throw;
-  } catch (const ComputationError&) {
-    finish(false);
-    throw;
-  }
-  keeper.save();
-  finish(true);
+  }, finish);
   fmt::print("{} equilibria, {} iterations in {:.1f} s\n", p.samples, steps.iterations, seconds_since(start));
 }
 

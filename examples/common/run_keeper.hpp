@@ -76,6 +76,23 @@ class RunKeeper {
     stop_.check();
     if (std::chrono::duration<double>(Clock::now() - saved_).count() > every_) save();
   }
+  /// Calls work(), which calls check() after every step, keeps the state at its end, and says finish(completed). Where a signal
+  /// ended the work the state is kept, too; where a step broke down it is not: the checkpoint there is stays. Both go on.
+  template <class Work, class Finish>
+  void run(const Work& work, const Finish& finish) {
+    try {
+      work();
+    } catch (const Interrupted&) {
+      save();
+      finish(false);
+      throw;
+    } catch (const ComputationError&) {
+      finish(false);
+      throw;
+    }
+    save();
+    finish(true);
+  }
   /// Writes the checkpoint, unless none is wanted. Throws FileError.
   void save() {
     if (every_ == 0.0) return;

@@ -77,7 +77,7 @@ struct SpreadingRun {
       progress.finish();
       recorder.write_summary(simulation, simulation.steps() - first_step, seconds() - setup, completed);
     };
-    try {
+    keeper.run([&] {
       simulation.run(p.end_time, every(p.end_time / samples, [&](auto& s) { recorder.record(s); }),
                      every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
                      every_steps(10, [&](auto& s) {
@@ -85,16 +85,7 @@ struct SpreadingRun {
                        watch_energy(s);
                      }),
                      every_steps(1, [&](auto&) { keeper.check(); }));  // the last one: the others have seen the step
-    } catch (const Interrupted&) {
-      keeper.save();
-      finish(false);
-      throw;
-    } catch (const ComputationError&) {
-      finish(false);
-      throw;
-    }
-    keeper.save();
-    finish(true);
+    }, finish);
     fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps() - first_step,
                seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);
   }

@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
       writer.part("simulation", simulation);
       writer.part("series", series);
     });
-    try {
+    keeper.run([&] {
       simulation.run(end_time, every(end_time / 200, [&](auto& s) {
                        const EnergyLedger& e = s.ledger();
                        history.write(std::array{s.time(), motion(s.template particles<0>()).center_of_mass[2] - bottom,
@@ -108,11 +108,7 @@ int main(int argc, char** argv) {
                        series.add(0, s.template body<0>(), s.template particles<0>(), s.time());
                      }),
                      every_steps(1, [&](auto&) { keeper.check(); }));
-    } catch (const Interrupted&) {
-      keeper.save();
-      throw;
-    }
-    keeper.save();
+    }, [](bool) {});
     fmt::print("{} steps, energy error {:.2g} %; results in {}\n", simulation.steps(), 100.0 * simulation.ledger().error(), out);
     return 0;
   });
