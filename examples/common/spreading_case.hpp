@@ -1,6 +1,9 @@
 #pragma once
 
+#include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include <tactoid/tactoid.hpp>
 
@@ -8,13 +11,26 @@
 
 namespace tactoid {
 
+/// What a study adds to the case: contacts, and columns of the history with their values at an instant. This one adds nothing.
+struct NothingAdded {
+  [[nodiscard]] std::tuple<> contacts() const { return {}; }
+  [[nodiscard]] std::vector<std::string> columns() const { return {}; }
+  template <class S>
+  [[nodiscard]] std::vector<double> values(S&) const {
+    return {};
+  }
+};
+
 /// The cell of the paper on its substrate: how the spreading examples and the benchmarks compose it.
 /// `substrate_law`: a law or Graded, as SpreadingParameters::substrate_law gives it. D = 2: in the meridian section, with
-/// `substrate_law` a function of that place.
-template <MaterialSource Law, int D = 3>
+/// `substrate_law` a function of that place. `added`: more contacts and columns, such as NothingAdded.
+template <MaterialSource Law, int D = 3, class Added = NothingAdded>
 struct SpreadingCase {
   SpreadingParameters p;
   Law substrate_law;
+  Added added = {};
+
+  static constexpr std::size_t first_added_contact = 3;  ///< its number in the simulation
 
   [[nodiscard]] auto cell() const {
     PointCloud<D> cloud = p.cell_cloud<D>();
@@ -31,22 +47,28 @@ struct SpreadingCase {
     return Body{"substrate", p.substrate_cloud<D>(), Rkpm<D>{.support = p.support}, p.quadrature(),
                 Materials{Region{"body", substrate_law}}};
   }
-  /// Everything on: both contacts, anchoring, surface tension, the fixed bottom.
+  /// Everything on: both contacts, anchoring, what is added, surface tension, the fixed bottom.
   [[nodiscard]] auto simulation() const {
     auto cell_body = cell();
     auto substrate_body = substrate();
     const auto bottom =
         select(substrate_body.cloud(), [&](const Point<D>& X) { return X[D - 1] < -p.substrate_height * (1.0 - 1e-9); });
+    auto contacts = std::apply(
+        [&](auto... more) {
+          return Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
+                          between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30}), std::move(more)...};
+        },
+        added.contacts());
     return Simulation{
-        Bodies{std::move(cell_body), std::move(substrate_body)},
-        Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
-                 between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30})},
+        Bodies{std::move(cell_body), std::move(substrate_body)}, std::move(contacts),
         Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
         CentralDifference{.safety = p.safety, .time_step = p.time_step}};
   }
 };
 template <MaterialSource Law>
 SpreadingCase(SpreadingParameters, Law) -> SpreadingCase<Law>;
+template <MaterialSource Law, class Added>
+SpreadingCase(SpreadingParameters, Law, Added) -> SpreadingCase<Law, 3, Added>;
 
 /// The same in the meridian section. Throws ParameterError for what is not axisymmetric.
 template <MaterialSource Law>

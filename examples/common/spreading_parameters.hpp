@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 
 #include <tactoid/tactoid.hpp>
@@ -202,6 +203,13 @@ struct SpreadingParameters {
     const ModifiedMooneyRivlin base{
         .density = substrate_density, .c1 = substrate_c1, .c2 = substrate_c2, .lambda = substrate_lambda};
     return {.elastic = base.scaled(factor), .a1 = viscous * a1, .a2 = viscous * a2, .a3 = a3};
+  }
+  /// The substrate whose factor grows with the angle, from `soft` on the side +x to `stiff` on the side −x (Fig. 11).
+  [[nodiscard]] auto graded_substrate(double soft, double stiff) const {
+    return Graded{[*this, soft, stiff](const Vector3& X) {
+      const double angle = std::abs(std::atan2(X[1], X[0]));  // θ, 0 … π
+      return substrate_law(soft + (stiff - soft) * angle / std::numbers::pi);
+    }};
   }
   /// In the meridian section a uniform director is along the axis.
   template <int D>

@@ -23,11 +23,12 @@ template <int D = 3>
 class SpreadingRecorder {
  public:
   /// `cutoff`: gap below which the surface counts as spread, m. With `resumed_at` (s) it goes on with the files of the run that is
-  /// continued from there, and awaits its state.
-  SpreadingRecorder(std::filesystem::path folder, double cutoff, std::optional<double> resumed_at = {})
+  /// continued from there, and awaits its state. `more`: columns of the history that the study adds.
+  SpreadingRecorder(std::filesystem::path folder, double cutoff, std::optional<double> resumed_at = {}, std::vector<std::string> more = {})
       : folder_(std::move(folder)),
         cutoff_(cutoff),
-        history_(folder_ / "history.csv", columns(), resumed_at),
+        columns_(with(columns(), more)),
+        history_(folder_ / "history.csv", columns_, resumed_at),
         front_(folder_ / "front.csv", front_columns(), resumed_at),
         frames_(folder_, {"cell", "substrate"}, resumed_at) {}
 
@@ -77,9 +78,9 @@ class SpreadingRecorder {
     return names;
   }
 
-  /// One line of the histories.
+  /// One line of the histories; `more`: the values of the columns that the study adds.
   template <class S>
-  void record(S& simulation) {
+  void record(S& simulation, const std::vector<double>& more = {}) {
     if (!last_.empty() && last_.front() == simulation.time()) return;
     const Timer timer(seconds_);
     measure(simulation);
@@ -122,6 +123,7 @@ class SpreadingRecorder {
              smallest,
              D == 2 ? front.radius : front_radius(front, Vector3::Zero(), Vector3::UnitX()),
              D == 2 ? front.radius : front_radius(front, Vector3::Zero(), -Vector3::UnitX())};
+    last_ = with(std::move(last_), more);
     history_.write(last_);
     std::vector<double> shape = {simulation.time(), front.center[0], D == 2 ? 0.0 : front.center[1], front.radius};
     for (const auto* part : {&front.modes, &front.phases})
@@ -144,8 +146,7 @@ class SpreadingRecorder {
   template <class S>
   void write_summary(S& simulation, std::size_t steps_taken, double wall_seconds, bool completed) const {
     Summary summary;
-    const std::vector<std::string> names = columns();
-    for (std::size_t i = 0; i < names.size(); ++i) summary.set(names[i], last_[i]);
+    for (std::size_t i = 0; i < columns_.size(); ++i) summary.set(columns_[i], last_[i]);
     summary.set("steps", simulation.steps());
     summary.set("wall_seconds", wall_seconds);
     summary.set("particles_cell", simulation.template body<0>().size());
@@ -179,6 +180,11 @@ class SpreadingRecorder {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   };
 
+  template <class T>
+  [[nodiscard]] static std::vector<T> with(std::vector<T> list, const std::vector<T>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+    return list;
+  }
   [[nodiscard]] ContactFront front_of(const ParticleFields& cell) const {
     if constexpr (D == 2) return contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_);
     else return contact_front(gaps_.surface(), cell.position, gaps_.gaps(), cutoff_, Vector3::UnitZ(), front_modes);
@@ -189,6 +195,7 @@ class SpreadingRecorder {
   static constexpr int front_modes = 16;
   std::filesystem::path folder_;
   double cutoff_;
+  std::vector<std::string> columns_;  // of the history
   HistoryWriter history_, front_;
   FrameSeries frames_;
   SurfaceGaps<D> gaps_;

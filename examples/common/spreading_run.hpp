@@ -47,7 +47,7 @@ struct SpreadingRun {
     const std::optional<double> resumed_at = restart.resume(simulation);
     Restart::require_end_after(resumed_at, p.end_time);
     prepare_folder(out);
-    SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range, resumed_at);
+    SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range, resumed_at, spreading.added.columns());
     if (resumed_at) recorder.measure(simulation);
     restart.restore("recorder", recorder);
     restart.announce(simulation);
@@ -63,10 +63,11 @@ struct SpreadingRun {
                1e9 * simulation.largest_stable_time_step(), thread_count());
     const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
     const double setup = seconds();
+    const auto record = [&](auto& s) { recorder.record(s, spreading.added.values(s)); };
     const auto watch_energy = [&](auto& s) {
       const double error = s.ledger().error();
       if (s.steps() < 100 || error <= energy_limit) return;  // at first there is little work to compare with
-      recorder.record(s);
+      record(s);
       recorder.write_frame(s);
       throw ComputationError(fmt::format(
           "The energy balance is off by {:.3g} % at t = {:.6g} s, and --max-energy-error allows {:.3g} %; likely causes are "
@@ -78,7 +79,7 @@ struct SpreadingRun {
       recorder.write_summary(simulation, simulation.steps() - first_step, seconds() - setup, completed);
     };
     keeper.run([&] {
-      simulation.run(p.end_time, every(p.end_time / samples, [&](auto& s) { recorder.record(s); }),
+      simulation.run(p.end_time, every(p.end_time / samples, record),
                      every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
                      every_steps(10, [&](auto& s) {
                        progress.update(s.time(), s.steps() - first_step);

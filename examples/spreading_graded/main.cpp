@@ -2,9 +2,6 @@
 //
 //   spreading_graded --out out/graded
 //   spreading_graded --soft 2 --stiff 50 --preset elastic --activity=-1kPa
-#include <cmath>
-#include <numbers>
-
 #include "common/program.hpp"
 #include "common/spreading_run.hpp"
 
@@ -22,11 +19,7 @@ int main(int argc, char** argv) {
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
-    const Graded substrate{[&](const Vector3& X) {
-      const double angle = std::abs(std::atan2(X[1], X[0]));  // θ, 0 … π
-      return p.substrate_law(soft + (stiff - soft) * angle / std::numbers::pi);
-    }};
-    run(SpreadingCase{p, substrate}, options);
+    run(SpreadingCase{p, p.graded_substrate(soft, stiff)}, options);
     return 0;
   });
 }

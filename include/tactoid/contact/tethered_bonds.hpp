@@ -67,6 +67,8 @@ class TetherSites {
   [[nodiscard]] std::span<const double> bound() const { return bound_; }               ///< bonds that hold, per site
   [[nodiscard]] std::span<const Vector4> extension() const { return extension_; }      ///< from anchor to site, m; 0 where nothing is bound
   [[nodiscard]] std::span<const double> stored() const { return stored_; }             ///< energy of the bonds of each site, J
+  /// Where a site was at the last call, m.
+  [[nodiscard]] const Vector4& place(std::size_t site) const { return points_[point_of_[site]]; }
 
   /// What a checkpoint keeps.
   template <class Archive>
