@@ -109,6 +109,115 @@ TEST_CASE("Bonds that are stretched at a constant rate break at Bell's mean forc
   }
 }
 
+TEST_CASE("Pulled off at a constant speed: the force over the distance, its maximum, the work of separation") {
+  // n(F) = N exp(−a (e^x − 1)), x = F/F_b, a = k F_b/(κ v): the force N F_b x exp(−a (e^x − 1)) is largest where a x eˣ = 1.
+  constexpr double F_b = 10.0 * pN, off = 1e5, stiffness = 1e-3;
+  for (const double speed : {0.005, 0.05}) {
+    const double a = off * F_b / (stiffness * speed);
+    const auto exact = [&](double x) { return receptors * F_b * x * std::exp(-a * std::expm1(x)); };
+    double strongest = 1.0;
+    for (int k = 0; k < 50; ++k) strongest -= (a * strongest * std::exp(strongest) - 1.0) / (a * (1.0 + strongest) * std::exp(strongest));
+    const double largest = receptors * F_b * strongest * std::exp(a - 1.0 / strongest);
+    REQUIRE(exact(strongest) == Close{largest, 1e-10});
+    const double end = 8.0;
+    double separation = 0.0;  // ∫ force d(distance), by Simpson's rule
+    for (int k = 0; k <= 4000; ++k) separation += exact(end * k / 4000.0) * (k == 0 || k == 4000 ? 1.0 : k % 2 == 1 ? 4.0 : 2.0);
+    separation *= end / 4000.0 / 3.0 * F_b / stiffness;
+
+    struct Pulled {
+      double curve = 0.0, largest = 0.0, at = 0.0, work = 0.0;
+    };
+    const auto pull_off = [&](int steps) {
+      Pair pair({.stiffness = stiffness, .kinetics = {.off_rate = off, .slip_force = F_b}});
+      pair.bind(Vector3::Zero());
+      const double step = end * F_b / (stiffness * speed) / steps;
+      Pulled p;
+      double before = 0.0;
+      for (int k = 1; k <= steps; ++k) {
+        const double force = -pair.pull(Vector3(0.0, 0.0, speed * k * step), k * step)[2], x = end * k / steps;
+        p.curve = std::max(p.curve, std::abs(force - exact(x)) / largest);
+        if (force > p.largest) p.largest = force, p.at = x;
+        p.work += 0.5 * (before + force) * speed * step;
+        before = force;
+      }
+      return p;
+    };
+    const Pulled coarse = pull_off(8000), fine = pull_off(16000);
+    MESSAGE("at " << speed << " m/s: largest force " << largest / pN << " pN, " << fine.largest / largest - 1.0 << " off, at "
+                  << strongest << " F_b; curve within " << coarse.curve << ", " << fine.curve << " of it; work " << fine.work / separation - 1.0 << " off");
+    CHECK(fine.curve < 4e-4);
+    CHECK(coarse.curve / fine.curve == Close{2.0, 0.02});  // first order in the step
+    CHECK(fine.largest == Close{largest, 4e-4});
+    CHECK(fine.at == Close{strongest, 2e-2});  // the maximum is flat
+    CHECK(fine.work == Close{separation, 4e-4});
+  }
+}
+
+TEST_CASE("Pulled off where force does not matter: bonds in equilibrium up to the capture distance, then what is left") {
+  constexpr double on = 3e6, off = 1e6, rest = 10.0 * nm, reach = 30.0 * nm, stiffness = 1e-3;
+  constexpr double bound = receptors * on / (on + off), step = 1e-9;
+  for (const double speed : {1e-4, 1e-2}) {
+    Pair pair({.stiffness = stiffness, .rest_length = rest, .capture_distance = reach * (1.0 - 1e-9), .kinetics = {.on_rate = on, .off_rate = off, .slip_force = infinite}});
+    const Vector3 start(0.0, 0.0, 20.0 * nm);
+    pair.pull(start, -1.0);
+    pair.pull(start, 0.0);  // a second is eternity: equilibrium
+    REQUIRE(pair.bonds.bonds() == Close{bound, 1e-12});
+    const double path = speed / off;  // how far it moves in the life of a bond
+    const double h = speed < 1e-3 ? 100.0 * step : step, end = reach + 12.0 * path;
+    double work = 0.0, before = bound * stiffness * 10.0 * nm, largest = 0.0, off_by = 0.0;
+    for (int k = 1; start[2] + speed * k * h < end; ++k) {
+      const double z = start[2] + speed * k * h, force = -pair.pull(Vector3(0.0, 0.0, z), k * h)[2];
+      // The step that ends at the capture distance is the first in which none forms.
+      const double lost = z < reach * (1.0 - 1e-8) ? 0.0 : (z - reach) / path + off * h;
+      off_by = std::max(off_by, std::abs(force / (bound * stiffness * (z - rest) * std::exp(-lost)) - 1.0));
+      largest = std::max(largest, force);
+      work += 0.5 * (before + force) * speed * h;
+      before = force;
+    }
+    CHECK(off_by < 1e-8);
+    // Elastic up to the capture distance; beyond it ∫ n κ (z − ℓ) e^{−(z − d)/path} dz.
+    const double d = reach - rest;
+    const double exact = bound * stiffness * (0.5 * (d * d - 100.0 * nm * nm) + d * path + path * path);
+    MESSAGE("at " << speed << " m/s: work " << work / exact - 1.0 << " off, largest force " << largest / (bound * stiffness * d)
+                     << " of that at the capture distance, curve within " << off_by);
+    CHECK(work == Close{exact, 2.0 * off * h * path / d + 1e-3});
+    if (speed < 1e-3) CHECK(largest == Close{bound * stiffness * d, 1e-3});  // slow: what equilibrium gives
+  }
+}
+
+TEST_CASE("Pulled off with bonds that catch, slip and form again: against the equation of the kinetics") {
+  // n' = k_on (N − n) − k_off(F) n within reach, by Runge and Kutta's rule with a fine step.
+  constexpr double speed = 0.02, on = 1e6, rest = 5.0 * nm, reach = 25.0 * nm, stiffness = 1e-3;
+  const BondKinetics kinetics{.on_rate = on, .off_rate = 2e4, .slip_force = 5.0 * pN, .catch_rate = 2e6, .catch_force = 5.0 * pN};
+  const auto rate = [&](double t, double n) {
+    const double z = speed * t, f = std::max(0.0, stiffness * (z - rest));
+    return (z < reach ? on * (receptors - n) : 0.0) - (2e4 * std::exp(f / (5.0 * pN)) + 2e6 * std::exp(-f / (5.0 * pN))) * n;
+  };
+  const auto worst = [&](int steps) {
+    Pair pair({.stiffness = stiffness, .rest_length = rest, .capture_distance = reach, .kinetics = kinetics});
+    pair.pull(Vector3::Zero(), 0.0);
+    constexpr double end = 2.5e-6;  // 50 nm
+    const double step = end / steps;
+    double n = 0.0, off_by = 0.0, largest = 0.0;
+    for (int k = 1; k <= steps; ++k) {
+      constexpr int fine = 4;
+      for (int i = 0; i < fine; ++i) {
+        const double h = step / fine, t = (k - 1) * step + i * h;
+        const double a = rate(t, n), b = rate(t + 0.5 * h, n + 0.5 * h * a), c = rate(t + 0.5 * h, n + 0.5 * h * b), e = rate(t + h * (1.0 - 1e-9), n + h * c);
+        n += h / 6.0 * (a + 2.0 * b + 2.0 * c + e);
+      }
+      const double z = speed * k * step, force = -pair.pull(Vector3(0.0, 0.0, z), k * step)[2];
+      off_by = std::max(off_by, std::abs(force - n * stiffness * (z - rest)));
+      largest = std::max(largest, force);
+    }
+    MESSAGE("largest force " << largest / pN << " pN, curve within " << off_by / largest << " of it");
+    return off_by / largest;
+  };
+  const double coarse = worst(5000), fine = worst(10000);
+  CHECK(fine < 1e-3);
+  CHECK(coarse / fine == Close{2.0, 0.05});
+}
+
 TEST_CASE("The density of bonds relaxes to its equilibrium at the sum of the rates") {
   for (const bool stochastic : {false, true}) {
     Pair pair({.density = stochastic ? 2e15 : 1e14, .kinetics = {.on_rate = 3e5, .off_rate = 1e5, .slip_force = infinite}, .stochastic = stochastic});
