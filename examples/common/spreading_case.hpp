@@ -62,7 +62,7 @@ struct SpreadingCase {
     return Simulation{
         Bodies{std::move(cell_body), std::move(substrate_body)}, std::move(contacts),
         Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
-        CentralDifference{.safety = p.safety, .time_step = p.time_step}};
+        CentralDifference{.safety = p.safety, .time_step = p.time_step, .min_time_step = p.min_time_step}};
   }
 };
 template <MaterialSource Law>

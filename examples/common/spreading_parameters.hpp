@@ -60,6 +60,7 @@ struct SpreadingParameters {
   double fluid_hourglass = 5.0;    ///< stabilisation modulus of the cytoplasm, Pa
   double safety = 0.8;             ///< of the stable time step
   double time_step = 0.0;          ///< s; 0: chosen by the library
+  double min_time_step = 1e-15;    ///< s; a run whose stable step is shorter stops
   double end_time = 5e-6;          ///< s
 
   void add_to(Options& options) {
@@ -129,6 +130,8 @@ struct SpreadingParameters {
     options.add("safety", &safety, Range::between(0.01, 1.0), "Fraction of the stable time step");
     options.add_quantity("time-step", &time_step, Quantity::time, Range::non_negative(),
                          "Fixed time step; 0: chosen by the program");
+    options.add_quantity("min-time-step", &min_time_step, Quantity::time, Range::non_negative(),
+                         "A run whose stable time step is shorter stops");
   }
 
   [[nodiscard]] int count(int at_one, int least) const {

@@ -1,0 +1,88 @@
+"""The program durotaxis: its options, what tethers change, that without them it is spreading_graded, and runs that are continued.
+
+    python3 durotaxis.py DUROTAXIS SPREADING_GRADED [name of a test ...]
+"""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples" / "common"))
+from continued_run import ENVIRONMENT, assert_same, interrupt
+from vtu_reader import read_history
+
+PROGRAMS = []
+NEAR = ["--gap=1nm", "--resolution=0.4", "--end-time=0.3us", "--frames=2", "--samples=10", "--threads=1", "--preset=elastic", "--activity=-1kPa"]
+ADDED = ["bonds_plus_x", "bonds_minus_x", "pull_plus_x", "pull_minus_x", "bond_tension", "bond_force_y", "speed_max"]
+
+
+class Durotaxis(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="durotaxis_"))
+        self.addCleanup(shutil.rmtree, self.folder, True)
+
+    def run_program(self, out, *arguments, program=0, status=0):
+        result = subprocess.run([PROGRAMS[program], *NEAR, *arguments, f"--out={self.folder / out}"], capture_output=True, text=True,
+                                timeout=300, env=ENVIRONMENT)
+        self.assertEqual(result.returncode, status, result.stderr)
+        return result
+
+    def history(self, out):
+        return read_history(self.folder / out / "history.csv")
+
+    def test_without_tethers_it_is_spreading_graded(self):
+        self.run_program("off", "--tethers=off")
+        self.run_program("graded", program=1)
+        off, graded = self.history("off"), self.history("graded")
+        self.assertEqual(list(off), [*graded, *ADDED])
+        for name in graded:
+            np.testing.assert_array_equal(off[name], graded[name], err_msg=name)
+        for name in ADDED[:-1]:
+            self.assertFalse(off[name].any(), name)
+        self.assertGreater(off["speed_max"][-1], 0.0)
+
+    def test_bonds_hold_the_cell(self):
+        for name, arguments in {"off": ["--tethers=off"], "mean": [], "dense": ["--tether-density=3000/um2"], "single": ["--tethers=stochastic"],
+                                "other": ["--tethers=stochastic", "--tether-seed=2"]}.items():
+            self.run_program(name, *arguments)
+        runs = {name: self.history(name) for name in ("off", "mean", "dense", "single", "other")}
+        bonds = {name: run["bonds_plus_x"][-1] + run["bonds_minus_x"][-1] for name, run in runs.items()}
+        self.assertGreater(bonds["mean"], 100.0)
+        self.assertGreater(bonds["dense"], 5.0 * bonds["mean"])
+        # Single bonds are whole ones, about as many as in the mean field, and other ones for another seed.
+        self.assertEqual(bonds["single"], round(bonds["single"]))
+        self.assertLess(abs(bonds["single"] / bonds["mean"] - 1.0), 0.25)
+        self.assertFalse(np.array_equal(runs["single"]["com_x"], runs["other"]["com_x"]))
+        # They slow the spreading down, and the cell draws the substrate outward.
+        self.assertLess(runs["dense"]["contact_radius"][-1], runs["off"]["contact_radius"][-1])
+        self.assertLess(runs["dense"]["pull_plus_x"][-1] + runs["dense"]["pull_minus_x"][-1], 0.0)
+        self.assertLess(runs["dense"]["energy_error"][-1], 0.05)
+
+    def test_a_continued_run_has_the_same_bits(self):
+        single = ["--tethers=stochastic"]
+        self.run_program("whole", *single)
+        interrupt(self, PROGRAMS[0], signal.SIGTERM, 5, *NEAR, *single, "--out", "cut")
+        result = subprocess.run([PROGRAMS[0], f"--restart={self.folder / 'cut' / 'checkpoint.h5'}", "--threads=2"], cwd=self.folder,
+                                capture_output=True, text=True, timeout=300, env=ENVIRONMENT)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        assert_same(self, "whole", "cut", "history.csv", "front.csv")
+
+    def test_bad_input(self):
+        for arguments, sentence in [(["--tethers=some"], "is not one of off, mean, stochastic"), (["--slip-force=0pN"], "--slip-force = 0 N is not allowed"),
+                                    (["--tether-density=-1/um2"], "--tether-density"), (["--off-rate=1s"], "--off-rate"),
+                                    (["--rate-factor=0"], "--rate-factor = 0 is not allowed")]:
+            result = self.run_program("refused", *arguments, status=2)
+            self.assertIn(sentence, result.stderr)
+            self.assertFalse((self.folder / "refused").exists())
+
+
+if __name__ == "__main__":
+    PROGRAMS = [os.path.abspath(sys.argv.pop(1)), os.path.abspath(sys.argv.pop(1))]
+    unittest.main()
