@@ -11,7 +11,8 @@ from vtu_reader import HEXAHEDRON, Grid, read_series
 TITLE = "Does a contractile cell that bonds hold go to the stiff side?"
 TIME, TOUCH, LATE = 4.5e-6, 0.75e-6, 3.0e-6  # end, first bonds, when most of the cell is down, s
 MESH = 0.6
-FIXED = [("end-time", "4.5us"), ("samples", "90"), ("checkpoint-every", "0s"), ("min-time-step", "0.2ns")]
+FIXED = [("end-time", "4.5us"), ("samples", "90"), ("checkpoint-every", "0s")]
+FLOOR = "0.2ns"  # of the time step, 1/37 of the first stable one: below it a run stops
 RATE_FACTOR, VISCOSITY = 1e7, 3e-3  # of the program: of the rates; μ, Pa s
 GRADED, REVERSED, UNIFORM = ("2", "10"), ("10", "2"), ("6", "6")  # factors on the sides +x and −x; 6 is the mean
 
@@ -50,7 +51,7 @@ MAP_ACTIVITIES = ["0Pa", "-1kPa", "-2kPa", "-5kPa"]
 MAP_DENSITIES = ["0", "30", "100", "300", "1000"]  # /µm²
 LADDER = ["-1kPa", "-2kPa", "-5kPa", "-10kPa", "-20kPa", "-50kPa"]
 BREAKING = [  # what might move the end of a run at the activity BROKEN
-    ("as above", {}), ("safety 0.2", {"safety": "0.2"}), ("resolution 0.8", mesh(0.8)), ("stabilisation 500 Pa", {"fluid_hourglass": "500Pa"}),
+    ("as above", {}), ("safety 0.2", {"safety": "0.2", "min_time_step": "0.05ns"}), ("resolution 0.8", {**mesh(0.8), "min_time_step": "0.15ns"}), ("stabilisation 500 Pa", {"fluid_hourglass": "500Pa"}),
     ("viscosity 30 mPa s", {"viscosity": "30mPa.s"}), ("viscosity 0.3 Pa s", {"viscosity": "0.3Pa.s"}),
     ("director uniform", {"director": "uniform"}),
 ]
@@ -69,13 +70,18 @@ def dense(activity, density):
     """The pair of runs of one point of the map."""
     if density == "0":
         return pair(activity, "off")
-    return pair(activity, "mean", **({} if density == "300" else {"tether_density": f"{density}/um2"}))
+    return pair(activity, "mean", **({} if density == "300" else {"tether_density": f"{density}e12"}))
 
 
 def on_mesh(activity, tethers, factor):
     """The pair of runs on one mesh; one run where nothing but the substrate breaks the symmetry: then the other one is its mirror image."""
     both = pair(activity, tethers, **mesh(factor))
     return both[:1] if activity == "0Pa" else both
+
+
+def rung(activity, tethers="mean", **given):
+    """A run of the ladder."""
+    return case(activity, tethers, **{"min_time_step": FLOOR, **given})
 
 
 def without_repetition(lists):
@@ -92,11 +98,12 @@ RUNS = without_repetition(
     + [case("-1kPa", "mean", UNIFORM, director="uniform")]
     + [options for activity in MAP_ACTIVITIES for density in MAP_DENSITIES for options in dense(activity, density)]
     + [options for _, given in CHANGES for options in change(given)])
-LADDER_RUNS = without_repetition([case(activity) for activity in LADDER] + [case(activity, "off") for activity in ("-5kPa", "-10kPa")]
-                                 + [case(BROKEN, "mean", **given) for _, given in BREAKING])
-SWEEPS = [("runs", "durotaxis", [*FIXED, ("frames", "1")], RUNS), ("ladder", "durotaxis", [*FIXED, ("frames", "18")], LADDER_RUNS),
-          ("meshes", "durotaxis", [*FIXED, ("frames", "1")],
-           [options for factor in MESHES[1:] for activity, tethers in MESH_CASES for options in on_mesh(activity, tethers, factor)])]
+LADDER_RUNS = without_repetition([rung(activity) for activity in LADDER] + [rung(activity, "off") for activity in ("-5kPa", "-10kPa")]
+                                 + [rung(BROKEN, **given) for _, given in BREAKING])
+MESH_RUNS = [options for factor in MESHES[1:] for activity, tethers in MESH_CASES for options in on_mesh(activity, tethers, factor)]
+SWEEPS = [("runs", "durotaxis", [*FIXED, ("min-time-step", FLOOR), ("frames", "1")], RUNS),
+          ("meshes", "durotaxis", [*FIXED, ("min-time-step", FLOOR), ("frames", "1")], MESH_RUNS),
+          ("ladder", "durotaxis", [*FIXED, ("frames", "18")], LADDER_RUNS)]
 NM = 1e9
 CORNERS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]) / 8.0
 
@@ -199,10 +206,10 @@ def mesh_table(folder):
 
 def ladder_table(folder):
     rows, lines = [], []
-    entries = [(label(activity, "mean"), case(activity), activity, VISCOSITY) for activity in LADDER]
-    entries += [(label(activity, "off"), case(activity, "off"), activity, VISCOSITY) for activity in ("-5kPa", "-10kPa")]
+    entries = [(label(activity, "mean"), rung(activity), activity, VISCOSITY) for activity in LADDER]
+    entries += [(label(activity, "off"), rung(activity, "off"), activity, VISCOSITY) for activity in ("-5kPa", "-10kPa")]
     viscosities = {"30mPa.s": 0.03, "0.3Pa.s": 0.3}
-    entries += [(f"{spelled(BROKEN)}, {name}", case(BROKEN, "mean", **given), BROKEN, viscosities.get(given.get("viscosity"), VISCOSITY))
+    entries += [(f"{spelled(BROKEN)}, {name}", rung(BROKEN, **given), BROKEN, viscosities.get(given.get("viscosity"), VISCOSITY))
                 for name, given in BREAKING[1:]]
     for name, options, activity, viscosity in entries:
         run = Case(folder / "ladder", options)
