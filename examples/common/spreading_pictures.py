@@ -177,6 +177,25 @@ def draw_meridian(axes, cell, substrate, norm):
     axes.set_aspect("equal", adjustable="box")
 
 
+def seen_from_above(cell):
+    """Facets that face up, the lowest first: corners (n, 4, 2), µm, and effective stress (n), kPa."""
+    facets = cell.surface()
+    corners = cell.points[facets] * UM
+    up = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])[:, 2] > 0.0
+    order = np.argsort(corners[up][:, :, 2].mean(axis=1))
+    return corners[up][order][:, :, :2], stress(cell)[facets].mean(axis=1)[up][order]
+
+
+def draw_from_above(axes, corners, stresses, norm, soft, stiff, half):
+    """Such facets on the substrate whose factor grows with the angle, from `soft` at +x to `stiff` at −x; within ±half, µm."""
+    x, y = np.meshgrid(np.linspace(-half, half, 201), np.linspace(-half, half, 201))
+    factor = soft + (stiff - soft) * np.abs(np.arctan2(y, x)) / np.pi
+    axes.imshow(factor, extent=(-half, half, -half, half), origin="lower", cmap="Greys", vmin=0.0, vmax=1.6 * max(soft, stiff),
+                interpolation="bilinear")
+    axes.add_collection(PolyCollection(corners, facecolors=COLORS(norm(stresses)), edgecolors=(0, 0, 0, 0.15), linewidths=0.2))
+    axes.set(xlabel="x (µm): stiff ← → soft" if stiff > soft else "x (µm): soft ← → stiff", aspect="equal")
+
+
 def evenly(items, count):
     """So many of a list, the first and the last among them; all where there are fewer."""
     return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, min(count, len(items))).round().astype(int))]

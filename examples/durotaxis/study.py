@@ -13,7 +13,7 @@ TIME, TOUCH, LATE = 4.5e-6, 0.75e-6, 3.0e-6  # end, first bonds, when most of th
 MESH = 0.6
 FIXED = [("end-time", "4.5us"), ("samples", "90"), ("checkpoint-every", "0s")]
 FLOOR = "0.2ns"  # of the time step, 1/37 of the first stable one: below it a run stops
-RATE_FACTOR, VISCOSITY = 1e7, 3e-3  # of the program: of the rates; μ, Pa s
+RATE_FACTOR, VISCOSITY, RADIUS, DENSITY = 1e7, 3e-3, 5e-6, 1000.0  # of the program: on the rates; μ, Pa s; R, m; ρ, kg/m³
 GRADED, REVERSED, UNIFORM = ("2", "10"), ("10", "2"), ("6", "6")  # factors on the sides +x and −x; 6 is the mean
 
 
@@ -51,7 +51,8 @@ MAP_ACTIVITIES = ["0Pa", "-1kPa", "-2kPa", "-5kPa"]
 MAP_DENSITIES = ["0", "30", "100", "300", "1000"]  # /µm²
 LADDER = ["-1kPa", "-2kPa", "-5kPa", "-10kPa", "-20kPa", "-50kPa"]
 BREAKING = [  # what might move the end of a run at the activity BROKEN
-    ("as above", {}), ("safety 0.2", {"safety": "0.2", "min_time_step": "0.05ns"}), ("resolution 0.8", {**mesh(0.8), "min_time_step": "0.15ns"}), ("stabilisation 500 Pa", {"fluid_hourglass": "500Pa"}),
+    ("as above", {}), ("safety 0.2", {"safety": "0.2", "min_time_step": "0.05ns"}),
+    ("resolution 0.8", {**mesh(0.8), "min_time_step": "0.15ns"}), ("stabilisation 500 Pa", {"fluid_hourglass": "500Pa"}),
     ("viscosity 30 mPa s", {"viscosity": "30mPa.s"}), ("viscosity 0.3 Pa s", {"viscosity": "0.3Pa.s"}),
     ("director uniform", {"director": "uniform"}),
 ]
@@ -214,17 +215,18 @@ def ladder_table(folder):
     for name, options, activity, viscosity in entries:
         run = Case(folder / "ladder", options)
         times, shares = orders(run)
-        natural = 2.0 * viscosity / (1e3 * abs(float(activity.removesuffix("kPa"))))  # 2μ/|ζ|
+        stress = 1e3 * abs(float(activity.removesuffix("kPa")))
+        viscous, inertial = 2.0 * viscosity / stress, RADIUS * np.sqrt(DENSITY / stress)
+        natural = max(viscous, inertial)
         end = run.history["time"][-1] if run.history is not None and len(run.history["time"]) else np.nan
         first = times[shares > 0.0][0] if np.any(shares > 0.0) else np.nan
-        rows.append([name, number(natural * US), f"{'reaches' if run.completed else 'stops at'} {number(end * US)} µs", number(end / natural, 2),
-                     "none" if np.isnan(first) and len(times) else f"{number(first * US, 2)} µs", number(first / natural, 2),
-                     f"{100.0 * shares[-1]:.1f} %" if len(shares) else "–",
-                     number(fastest(run))])
+        early = np.interp(1e-6, times, shares) if len(times) and times[-1] >= 0.999e-6 else np.nan
+        rows.append([name, number(viscous * US, 2), number(inertial * US, 2), "–" if np.isnan(end) else f"{'reaches' if run.completed else 'stops at'} {number(end * US)} µs",
+                     "none" if np.isnan(first) and len(times) else f"{number(first * US, 2)} µs", number(first / natural, 2), number(100.0 * early, 2),
+                     number(100.0 * shares[-1], 2) if len(shares) else "–", number(fastest(run))])
         lines.append((name, times, shares, natural))
-    text = table(["", "2μ/&#124;ζ&#124;, µs", "the run", "over 2μ/&#124;ζ&#124;", "first cell inverted at", "over 2μ/&#124;ζ&#124;", "inverted at its end",
-                  "largest speed, m/s"], rows)
-    return text, lines
+    return table(["", "2μ/&#124;ζ&#124;, µs", "R √(ρ/&#124;ζ&#124;), µs", "the run", "first cell inverted at", "over the longer time",
+                  "inverted at 1 µs, %", "at its end, %", "largest speed, m/s"], rows), lines
 
 
 def draw_map(axes, folder):
@@ -272,7 +274,8 @@ def report(folder):
     limits, lines = ladder_table(folder)
     for name, at, shares, natural in lines:
         axes[1, 1].plot(at / natural, 100.0 * shares, ".-", label=name)
-    axes[1, 1].set(xlabel="time over 2μ/|ζ|", ylabel="cells that are inverted (%)", title="how long a contractile gel keeps its order", xscale="log")
+    axes[1, 1].set(xlabel="time over the longer of 2μ/|ζ| and R √(ρ/|ζ|)", ylabel="cells that are inverted (%)",
+                   title="how long a contractile gel keeps its order")
     axes[1, 1].legend(fontsize=6)
     text = "![Displacements, map, parameters, order of the particles](durotaxis/durotaxis.png)\n\n"
     text += (f"At {TIME * US:g} µs, factors 2 (soft, +x) to 10 (stiff, −x), elastic substrate, resolution {MESH:g}; half the difference of a run and the one "

@@ -13,33 +13,15 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 from plot_program import run
+from spreading_pictures import draw_from_above, seen_from_above
 from vtu_reader import Grid, read_history, read_series
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from matplotlib.collections import PolyCollection
 
-UM, KPA, US = 1e6, 1e-3, 1e6  # from SI to the units of the figure
-
-
-def draw_substrate(axes, soft, stiff, half):
-    """The factor on the constants, by the angle from +x."""
-    x, y = np.meshgrid(np.linspace(-half, half, 201), np.linspace(-half, half, 201))
-    factor = soft + (stiff - soft) * np.abs(np.arctan2(y, x)) / np.pi
-    return axes.imshow(factor, extent=(-half, half, -half, half), origin="lower", cmap="Greys", vmin=0.0,
-                       vmax=1.6 * max(soft, stiff), interpolation="bilinear")
-
-
-def seen_from_above(cell):
-    """Facets that face up, the lowest first: corners (n, 4, 2), µm, and effective stress (n), kPa."""
-    facets = cell.surface()
-    corners = cell.points[facets] * UM
-    up = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])[:, 2] > 0.0
-    order = np.argsort(corners[up][:, :, 2].mean(axis=1))
-    stress = np.nan_to_num(cell.point_data["effective_stress"])[facets].mean(axis=1)[up] * KPA
-    return corners[up][order][:, :, :2], stress[order]
+UM, US = 1e6, 1e6  # from SI to the units of the figure
 
 
 def main():
@@ -61,10 +43,8 @@ def main():
     figure, axes = plt.subplots(1, len(views) + 1, figsize=(2.6 * len(views) + 3.4, 3.1), layout="constrained",
                                 width_ratios=[1.0] * len(views) + [1.3])
     for axis, (time, corners, stress) in zip(axes, views):
-        draw_substrate(axis, soft, stiff, half)
-        axis.add_collection(PolyCollection(corners, facecolors=plt.get_cmap("viridis")(norm(stress)), edgecolors=(0, 0, 0, 0.15),
-                                           linewidths=0.2))
-        axis.set(title=f"{time * US:.3g} µs", xlabel="x (µm): stiff ← → soft", aspect="equal")
+        draw_from_above(axis, corners, stress, norm, soft, stiff, half)
+        axis.set(title=f"{time * US:.3g} µs")
     axes[0].set_ylabel("y (µm)")
     figure.colorbar(matplotlib.cm.ScalarMappable(norm, "viridis"), ax=axes[len(views) - 1], label="effective stress (kPa)")
     time = history["time"] * US
