@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -21,6 +22,9 @@ struct NothingAdded {
   }
 };
 
+/// Number in the simulation of the first contact that a study adds.
+inline constexpr std::size_t first_added_contact = 3;
+
 /// The cell of the paper on its substrate: how the spreading examples and the benchmarks compose it.
 /// `substrate_law`: a law or Graded, as SpreadingParameters::substrate_law gives it. D = 2: in the meridian section, with
 /// `substrate_law` a function of that place. `added`: more contacts and columns, such as NothingAdded.
@@ -29,8 +33,6 @@ struct SpreadingCase {
   SpreadingParameters p;
   Law substrate_law;
   Added added = {};
-
-  static constexpr std::size_t first_added_contact = 3;  ///< its number in the simulation
 
   [[nodiscard]] auto cell() const {
     PointCloud<D> cloud = p.cell_cloud<D>();

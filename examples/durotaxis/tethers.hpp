@@ -9,6 +9,7 @@
 #include <tactoid/tactoid.hpp>
 
 #include <common/options.hpp>
+#include <common/spreading_case.hpp>
 
 namespace tactoid {
 
@@ -66,7 +67,7 @@ struct Tethers {
   }
   template <class S>
   [[nodiscard]] std::vector<double> values(S& simulation) const {
-    TetheredBonds& tethers = simulation.template contact<3>();
+    TetheredBonds& tethers = simulation.template contact<first_added_contact>();
     double bonds[2] = {}, pull[2] = {}, tension = 0.0, across = 0.0;
     tethers.sites.visit([&](const auto& sites) {
       for (std::size_t s = 0; s < sites.size(); ++s) {
