@@ -43,6 +43,8 @@ minutes. Every study has its folder, with its question, its commands and the com
 | 3. the front becomes wavy | not with the small active stress of the paper (−1 Pa): those waves are the mesh's | with −1 kPa and a director that varies in space: 4 to 5 % of the radius, the same waves on turned and finer meshes |
 | 4. the cell goes to the stiff side (Figs. 11, 12) | no | the front leads on either side in turn, by less than 1 % of its radius; the centre of mass moves by a few nm, to the soft side |
 | the axisymmetric model (Fig. 10) | reproduced | its spreading area is that in three dimensions, between the finest of both within 4.5 % (printed) and 5.3 % (elastic) from 1 µs on, 2 % from 2 µs on; no waves, by construction |
+| open in the paper: stability at a realistic contractile stress | runs of 4.5 µs come to their end up to −5 kPa; the particles keep their order up to −1 kPa, nearly up to −2 kPa | with the viscosity of cytosol the gel is drawn out within R √(ρ/&#124;ζ&#124;), whatever mesh, time step and bonds; more viscosity helps |
+| beyond the paper: bonds that hold in the tangential direction | up to −2 kPa the cell goes to the soft side, by 3 to 9 nm in 4.5 µs | the substrate gives way further there; the spreading cell pushes it outward, and does not pull |
 """
 
 

@@ -42,7 +42,8 @@ CHANGES = [
     ("κ 5 pN/nm", {"tether_stiffness": "5e-3N/m"}),
     ("catch and slip", {"off_rate": "4.2e-4Hz", "slip_force": "5.38pN", "catch_rate": "56Hz", "catch_force": "5.38pN"}),
     ("stochastic", {"tethers": "stochastic"}),
-    ("factors 0.2 to 1", {"sides": ("0.2", "1")}),
+    ("factors 0.2 to 1", {"sides": ("0.2", "1")}), ("factors 0.2 to 1, no tethers", {"sides": ("0.2", "1"), "tethers": "off"}),
+    ("factors 0.2 to 1, 1000 /µm²", {"sides": ("0.2", "1"), "tether_density": "1000e12"}), ("G 3·10⁵ N/kg", {"van_der_waals": "3e5N/kg"}),
     ("safety 0.4", {"safety": "0.4"}),
 ]
 FIELDS = [("random 1", {}), ("random 2", {"seed": "2"}), ("random 3", {"seed": "3"}),
@@ -58,7 +59,8 @@ BREAKING = [  # what might move the end of a run at the activity BROKEN
 ]
 BROKEN = "-20kPa"
 MESHES = [0.6, 0.8, 1.0]
-MESH_CASES = [("0Pa", "off"), ("0Pa", "mean"), ("-1kPa", "mean")]
+SOFTER = ("0.2", "1")
+MESH_CASES = [("0Pa", "off", GRADED), ("0Pa", "mean", GRADED), ("-1kPa", "mean", GRADED), ("0Pa", "off", SOFTER), ("0Pa", "mean", SOFTER)]
 
 
 def change(given, activity="-1kPa"):
@@ -74,9 +76,9 @@ def dense(activity, density):
     return pair(activity, "mean", **({} if density == "300" else {"tether_density": f"{density}e12"}))
 
 
-def on_mesh(activity, tethers, factor):
+def on_mesh(activity, tethers, sides, factor):
     """The pair of runs on one mesh; one run where nothing but the substrate breaks the symmetry: then the other one is its mirror image."""
-    both = pair(activity, tethers, **mesh(factor))
+    both = pair(activity, tethers, sides=sides, **mesh(factor))
     return both[:1] if activity == "0Pa" else both
 
 
@@ -101,7 +103,8 @@ RUNS = without_repetition(
     + [options for _, given in CHANGES for options in change(given)])
 LADDER_RUNS = without_repetition([rung(activity) for activity in LADDER] + [rung(activity, "off") for activity in ("-5kPa", "-10kPa")]
                                  + [rung(BROKEN, **given) for _, given in BREAKING])
-MESH_RUNS = [options for factor in MESHES[1:] for activity, tethers in MESH_CASES for options in on_mesh(activity, tethers, factor)]
+MESH_RUNS = [options for factor in MESHES for activity, tethers, sides in MESH_CASES for options in on_mesh(activity, tethers, sides, factor)
+             if options not in RUNS]
 SWEEPS = [("runs", "durotaxis", [*FIXED, ("min-time-step", FLOOR), ("frames", "1")], RUNS),
           ("meshes", "durotaxis", [*FIXED, ("min-time-step", FLOOR), ("frames", "1")], MESH_RUNS),
           ("ladder", "durotaxis", [*FIXED, ("frames", "18")], LADDER_RUNS)]
@@ -140,7 +143,9 @@ class Pair:
 
 
 def signed(value, digits=1):
-    return "–" if np.isnan(value) else f"{value:+.{digits}f}".replace("-", "−")
+    if np.isnan(value):
+        return "–"
+    return f"{value:+.{digits}f}".replace("-", "−") if round(value, digits) else "0"
 
 
 def inverted(frame):
@@ -197,12 +202,12 @@ def mesh_table(folder):
     rows = []
     for factor in MESHES:
         row = [f"resolution {factor:g}"]
-        for activity, tethers in MESH_CASES:
-            both = Pair(folder, on_mesh(activity, tethers, factor), "runs" if factor == MESH else "meshes")
-            row += [signed(both.toward("com_x") * NM), signed(both.speed() * 1e3, 2)]
+        for given in MESH_CASES:
+            runs = on_mesh(*given, factor)
+            both = Pair(folder, runs, "runs" if runs[0] in RUNS else "meshes")
+            row.append(f"{signed(both.toward('com_x') * NM)} nm, {signed(both.speed() * 1e3)} mm/s")
         rows.append(row)
-    head = [f"{label(activity, tethers)}: {what}" for activity, tethers in MESH_CASES for what in ("nm", "mm/s")]
-    return table(["", *head], rows)
+    return table(["", *(f"{label(activity, tethers)}, {sides[0]} to {sides[1]}" for activity, tethers, sides in MESH_CASES)], rows)
 
 
 def ladder_table(folder):
@@ -221,7 +226,8 @@ def ladder_table(folder):
         end = run.history["time"][-1] if run.history is not None and len(run.history["time"]) else np.nan
         first = times[shares > 0.0][0] if np.any(shares > 0.0) else np.nan
         early = np.interp(1e-6, times, shares) if len(times) and times[-1] >= 0.999e-6 else np.nan
-        rows.append([name, number(viscous * US, 2), number(inertial * US, 2), "–" if np.isnan(end) else f"{'reaches' if run.completed else 'stops at'} {number(end * US)} µs",
+        rows.append([name, number(viscous * US, 2), number(inertial * US, 2),
+                     "–" if np.isnan(end) else f"{'reaches' if run.completed else 'stops at'} {number(end * US)} µs",
                      "none" if np.isnan(first) and len(times) else f"{number(first * US, 2)} µs", number(first / natural, 2), number(100.0 * early, 2),
                      number(100.0 * shares[-1], 2) if len(shares) else "–", number(fastest(run))])
         lines.append((name, times, shares, natural))
@@ -244,13 +250,13 @@ def draw_map(axes, folder):
     axes.set(xticks=range(len(MAP_DENSITIES)), xticklabels=["none", *MAP_DENSITIES[1:]], yticks=range(len(MAP_ACTIVITIES)),
              yticklabels=[a.replace("-", "−").replace("kPa", "").replace("Pa", "") for a in MAP_ACTIVITIES],
              xlabel="receptors per µm²", ylabel="ζ (kPa)",
-             title="mean speed to the stiff side (mm/s); numbers: displacement (nm)")
+             title="to the stiff side: mean speed (mm/s); displacement (nm)")
     axes.grid(False)
     return image
 
 
 def report(folder):
-    figure, axes = plt.subplots(2, 2, figsize=(10.0, 7.4), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(11.0, 7.4), layout="constrained")
     times = np.linspace(TOUCH, TIME, 76)
     for (activity, tethers), color in zip(MAIN, ["C0", "C0", "C1", "C1", "C3", "C3"]):
         both = Pair(folder, pair(activity, tethers))
@@ -258,9 +264,9 @@ def report(folder):
         axes[0, 0].plot(times * US, moved, "--" if tethers == "off" else "-", color=color, label=label(activity, tethers))
     axes[0, 0].axhline(0.0, color="black", linewidth=0.6)
     axes[0, 0].set(xlabel="time (µs)", ylabel="centre of mass to the stiff side (nm)",
-                   title="half the difference of the substrate and the reversed one")
+                   title="what the gradient does")
     axes[0, 0].legend(fontsize=7)
-    figure.colorbar(draw_map(axes[0, 1], folder), ax=axes[0, 1])
+    figure.colorbar(draw_map(axes[0, 1], folder), cax=axes[0, 1].inset_axes([1.03, 0.0, 0.04, 1.0]))
     names = [*((f"director {name}", given) for name, given in FIELDS), *CHANGES[1:]]
     pairs = [Pair(folder, change(given)) for _, given in names]
     rows = np.arange(len(names))[::-1]
@@ -272,11 +278,13 @@ def report(folder):
     axes[1, 0].tick_params(axis="y", labelsize=7)
     axes[1, 0].legend(fontsize=7)
     limits, lines = ladder_table(folder)
-    for name, at, shares, natural in lines:
-        axes[1, 1].plot(at / natural, 100.0 * shares, ".-", label=name)
+    for number_of, (name, at, shares, natural) in enumerate(lines):
+        rung_of_ladder, color = number_of < len(LADDER), plt.get_cmap("tab20")(number_of)
+        axes[1, 1].plot(at / natural, 100.0 * shares, "-" if rung_of_ladder else "--", color=color, marker=".", label=name,
+                        linewidth=1.4 if rung_of_ladder else 1.0)
     axes[1, 1].set(xlabel="time over the longer of 2μ/|ζ| and R √(ρ/|ζ|)", ylabel="cells that are inverted (%)",
                    title="how long a contractile gel keeps its order")
-    axes[1, 1].legend(fontsize=6)
+    axes[1, 1].legend(fontsize=6, loc="center left", bbox_to_anchor=(1.0, 0.5))
     text = "![Displacements, map, parameters, order of the particles](durotaxis/durotaxis.png)\n\n"
     text += (f"At {TIME * US:g} µs, factors 2 (soft, +x) to 10 (stiff, −x), elastic substrate, resolution {MESH:g}; half the difference of a run and the one "
              "on the reversed substrate, positive to the stiff side:\n\n")
