@@ -157,7 +157,8 @@ TEST_CASE("Pulled off where force does not matter: bonds in equilibrium up to th
   constexpr double on = 3e6, off = 1e6, rest = 10.0 * nm, reach = 30.0 * nm, stiffness = 1e-3;
   constexpr double bound = receptors * on / (on + off), step = 1e-9;
   for (const double speed : {1e-4, 1e-2}) {
-    Pair pair({.stiffness = stiffness, .rest_length = rest, .capture_distance = reach * (1.0 - 1e-9), .kinetics = {.on_rate = on, .off_rate = off, .slip_force = infinite}});
+    Pair pair({.stiffness = stiffness, .rest_length = rest, .capture_distance = reach * (1.0 - 1e-9),
+               .kinetics = {.on_rate = on, .off_rate = off, .slip_force = infinite}});
     const Vector3 start(0.0, 0.0, 20.0 * nm);
     pair.pull(start, -1.0);
     pair.pull(start, 0.0);  // a second is eternity: equilibrium
