@@ -72,6 +72,35 @@ double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4>
   return area;
 }
 
+/// Calls emit(i, j, K) with the second derivative of `tension` × area in the nodes of every facet. With c = ∂x/∂s × ∂x/∂t,
+/// m = c/|c| and dc = [dx]: d²|c| = dc·(1 − m mᵀ) dc/|c| + m·d²c.
+template <int D, class Emit>
+void add_area_stiffness(const SurfaceIntegral<D>& s, const ParticleFields& body, double tension, const Emit& emit) {
+  const auto cross = [](const Vector3& v) {  // [v]ₓ w = v × w
+    Tensor3 A;
+    A << 0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0;
+    return A;
+  };
+  constexpr std::size_t corners = FacetSurface<D>::corners;
+  for (Index f = 0; f < s.surface.facets.size(); ++f) {
+    std::array<std::array<Tensor3, corners>, corners> K;
+    for (auto& row : K) row.fill(Tensor3::Zero());
+    for (const auto& point : s.quadrature.points) {
+      const FacetTangents a = s.surface.tangents(f, point.local, body.position);
+      const Vector3 c = a.area_vector(), m = c.normalized();
+      const Tensor3 across = (Tensor3::Identity() - m * m.transpose()) / c.norm(), turn = cross(m);
+      const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
+      std::array<Tensor3, corners> dc;
+      for (std::size_t k = 0; k < corners; ++k) dc[k] = nt[k] * cross(a.s) - ns[k] * cross(a.t);
+      for (std::size_t k = 0; k < corners; ++k)
+        for (std::size_t l = 0; l < corners; ++l)
+          K[k][l] += tension * point.weight * (dc[k].transpose() * across * dc[l] - (ns[k] * nt[l] - nt[k] * ns[l]) * turn);
+    }
+    for (std::size_t k = 0; k < corners; ++k)
+      for (std::size_t l = 0; l < corners; ++l) emit(s.surface.facets[f][k], s.surface.facets[f][l], K[k][l]);
+  }
+}
+
 }  // namespace detail
 
 /// Row sums of the stiffness (second derivative) of σ₀ A over the masses: Gershgorin's bound of ω², 1/s².
@@ -130,6 +159,12 @@ struct SurfaceTension {
       });
       return TermEnergy{.potential = s.gather(body)};
     });
+  }
+
+  /// The exact second derivative of σ₀ A, where surfaces are no rings (D = 2 around an axis: without the change of the circumference).
+  template <class Emit>
+  void add_stiffness(const ParticleFields& body, const Emit& emit) const {
+    integral.visit([&](const auto& s) { detail::add_area_stiffness(s, body, tension, emit); });
   }
 
   /// Gershgorin's bound, see area_stiffness_rate.

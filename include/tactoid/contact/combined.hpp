@@ -41,6 +41,16 @@ struct Combined {
     return std::apply([&](const auto&... part) { return (0.0 + ... + part.stiffness_rate(a, b)); }, parts);
   }
 
+  /// Of the parts that have one.
+  template <class Emit>
+    requires(ContactWithStiffness<Parts> || ...)
+  void add_stiffness(const ParticleFields& a, const ParticleFields& b, const Emit& emit) const {
+    const auto add = [&](const auto& part) {
+      if constexpr (ContactWithStiffness<std::decay_t<decltype(part)>>) part.add_stiffness(a, b, emit);
+    };
+    std::apply([&](const auto&... part) { (add(part), ...); }, parts);
+  }
+
   /// For checkpoints: those of the parts.
   template <class Archive>
   void state(Archive& archive) {

@@ -2,6 +2,7 @@
 
 #include <concepts>
 
+#include <tactoid/core/tensor.hpp>
 #include <tactoid/core/unsatisfied.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
@@ -14,6 +15,7 @@ namespace tactoid {
 /// checks parameters and builds search structures. `apply` is called once in every step: it adds forces to both
 /// bodies and returns its energy. `apply` must give the same bits for any number of threads; it may keep state: what
 /// only saves work (tracked closest points), and what the contact remembers (bonds), which a `state(archive)` hands to checkpoints.
+/// What is remembered changes only when `time` moves on: implicit steps try several positions at the time of their start.
 /// `stiffness_rate(a, b)` bounds ω² = k/m (1/s²) of the interaction at the present gaps, for the stable step: called after
 /// every `apply`.
 template <class C, int D>
@@ -27,5 +29,32 @@ concept Contact =
     (requires(const C& c, const ParticleFields& a, const ParticleFields& b) {
       { c.stiffness_rate(a, b) } -> std::convertible_to<double>;
     } || unsatisfied<"A Contact has `double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const` (1/s^2).">);
+
+/// A Contact that knows its stiffness, with which implicit steps converge fast: `add_stiffness(a, b, emit)` calls
+/// emit(of_b, i, by_b, j, K) with K = −∂f_i/∂x_j (3 × 3, N/m) for pairs of particles, at the state of the last call of `apply`;
+/// of_b and by_b say whether i and j are particles of B. The contributions to a pair add up.
+template <class C>
+concept ContactWithStiffness = requires(const C& c, const ParticleFields& a, const ParticleFields& b,
+                                        void (*emit)(bool of_b, Index i, bool by_b, Index j, const Tensor3& stiffness)) {
+  c.add_stiffness(a, b, emit);
+};
+
+namespace detail {
+
+/// Emits the stiffness k of a spring between a place on a facet of A and one on a facet of B, from their shape functions.
+template <class FacetA, class ShapeA, class FacetB, class ShapeB, class Emit>
+void emit_spring(const FacetA& on_a, const ShapeA& na, const FacetB& on_b, const ShapeB& nb, const Tensor3& k, const Emit& emit) {
+  for (std::size_t r = 0; r < on_a.size(); ++r) {
+    for (std::size_t c = 0; c < on_a.size(); ++c) emit(false, on_a[r], false, on_a[c], Tensor3(na[r] * na[c] * k));
+    for (std::size_t c = 0; c < on_b.size(); ++c) {
+      emit(false, on_a[r], true, on_b[c], Tensor3(-na[r] * nb[c] * k));
+      emit(true, on_b[c], false, on_a[r], Tensor3(-na[r] * nb[c] * k));
+    }
+  }
+  for (std::size_t r = 0; r < on_b.size(); ++r)
+    for (std::size_t c = 0; c < on_b.size(); ++c) emit(true, on_b[r], true, on_b[c], Tensor3(nb[r] * nb[c] * k));
+}
+
+}  // namespace detail
 
 }  // namespace tactoid

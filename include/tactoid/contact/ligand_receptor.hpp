@@ -112,6 +112,11 @@ struct LigandReceptor {
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law(), a, b);
   }
+  /// At the gaps of the last call of apply; see ContactPass::emit_stiffness.
+  template <class Emit>
+  void add_stiffness(const ParticleFields&, const ParticleFields&, const Emit& emit) const {
+    engine.emit_stiffness(law(), emit);
+  }
   /// For checkpoints: the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("engine", engine); }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <tactoid/contact/contact.hpp>
 #include <tactoid/contact/gap_law.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
@@ -107,6 +108,21 @@ class ContactPass {
     }
   }
 
+  /// Emits −∂f/∂x in the normal direction at the gaps of the last step (detail::emit_spring), negative where attraction softens.
+  /// The turning of the normal is left out.
+  template <GapLaw Law, class Emit>
+  void emit_stiffness(const Law& law, double factor, const Emit& emit) const {
+    const auto closest = tracker_.closest();
+    for (std::size_t q = 0; q < points_.size(); ++q) {
+      const double gap = closest[q].gap;
+      if (!(gap < law.reach())) continue;
+      const double near = 1e-6 * std::abs(gap);
+      const double k = std::copysign(factor * quadrature_.area[q] * law.stiffness(gap), law.traction(gap - near) - law.traction(gap + near));
+      detail::emit_spring(slave_.facets[quadrature_.facet_of(q)], quadrature_.point(q).shape, master_.facets[closest[q].facet],
+                          FacetSurface<D>::shape(closest[q].local), Tensor3(k * closest[q].normal * closest[q].normal.transpose()), emit);
+    }
+  }
+
   /// Closest points of the slave's quadrature points, facet by facet.
   [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return tracker_.closest(); }
   [[nodiscard]] const FacetSurface<D>& slave() const { return slave_; }               ///< whose quadrature points are tried
@@ -169,6 +185,15 @@ class SurfaceContactEngine {
     return rate;
   }
 
+  /// Emits the stiffness of both passes; see ContactPass::emit_stiffness.
+  template <GapLaw Law, class Emit>
+  void emit_stiffness(const Law& law, const Emit& emit) const {
+    const double factor = back_.empty() ? 1.0 : 0.5;
+    const auto turned = [&](bool of_b, Index i, bool by_b, Index j, const Tensor3& k) { emit(!of_b, i, !by_b, j, k); };
+    forth_.visit([&](const auto& pass) { pass.emit_stiffness(law, factor, emit); });
+    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.emit_stiffness(law, factor, turned); });
+  }
+
   /// The pass of A's facets: closest points, quadrature, surfaces, as f(const ContactPass<D>&).
   template <class F>
   decltype(auto) visit(F&& f) const {
@@ -207,6 +232,11 @@ struct SurfaceContact {
   /// Bound of ω² at the present gaps, 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law, a, b);
+  }
+  /// At the gaps of the last call of apply; see ContactPass::emit_stiffness.
+  template <class Emit>
+  void add_stiffness(const ParticleFields&, const ParticleFields&, const Emit& emit) const {
+    engine.emit_stiffness(law, emit);
   }
   /// For checkpoints: the closest points that are followed.
   template <class Archive>

@@ -62,6 +62,10 @@ class TetherSites {
   /// Bound of ω² if every receptor within reach, and every one that is bound, were a spring; 1/s².
   [[nodiscard]] double stiffness_rate(const TetheredBonds& law, const ParticleFields& a, const ParticleFields& b) const;
 
+  /// Emits −∂f/∂x of the bonds that hold; see ContactWithStiffness.
+  template <class Emit>
+  void add_stiffness(const TetheredBonds& law, const Emit& emit) const;
+
   [[nodiscard]] std::size_t size() const { return capacity_.size(); }                  ///< number of sites
   [[nodiscard]] std::span<const double> capacity() const { return capacity_; }         ///< receptors per site
   [[nodiscard]] std::span<const double> bound() const { return bound_; }               ///< bonds that hold, per site
@@ -170,6 +174,11 @@ struct TetheredBonds {
   /// Bound of ω², 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return sites.visit([&](const auto& s) { return s.stiffness_rate(*this, a, b); });
+  }
+  /// Of the bonds that hold, at the last call of apply; exact.
+  template <class Emit>
+  void add_stiffness(const ParticleFields&, const ParticleFields&, const Emit& emit) const {
+    sites.visit([&](const auto& s) { s.add_stiffness(*this, emit); });
   }
   /// Bonds that hold.
   [[nodiscard]] double bonds() const {
@@ -312,6 +321,21 @@ double TetherSites<D>::stiffness_rate(const TetheredBonds& law, const ParticleFi
   for (std::size_t i = 0; i < on_a.size(); ++i) rate = std::max(rate, on_a[i] / a.mass[i]);
   for (std::size_t i = 0; i < on_b.size(); ++i) rate = std::max(rate, on_b[i] / b.mass[i]);
   return rate;
+}
+
+template <int D>
+template <class Emit>
+void TetherSites<D>::add_stiffness(const TetheredBonds& law, const Emit& emit) const {
+  for (std::size_t s = 0; s < size(); ++s) {
+    const Vector3 extension = extension_[s].template head<3>();
+    const double r = extension.norm();
+    if (!(bound_[s] > 0.0) || !(r > 0.0)) continue;
+    const Tensor3 along = extension * extension.transpose() / (r * r);
+    const Tensor3 k = bound_[s] * (law.stiffness * along + law.tension(r) / r * (Tensor3::Identity() - along));
+    const std::size_t q = point_of_[s];
+    detail::emit_spring(slave_.facets[quadrature_.facet_of(q)], quadrature_.point(q).shape, master_.facets[anchor_facet_[s]],
+                        FacetSurface<D>::shape(anchor_[s]), k, emit);
+  }
 }
 
 static_assert(Contact<TetheredBonds, 2> && Contact<TetheredBonds, 3>);

@@ -23,8 +23,8 @@ namespace tactoid {
 ///
 /// Works on the body's displacement; the velocity is set to zero. Prescribed displacements grow linearly from the
 /// present ones to their values at `time` 0, the forces of the terms linearly from zero. A term that has a stiffness
-/// (TermWithStiffness: rigid surfaces) adds it to the tangent; the others are dead loads for it: those that follow the
-/// deformation (pressure, surface tension) converge too, but not quadratically.
+/// (TermWithStiffness: rigid surfaces, surface tension) adds it to the tangent; the others are dead loads for it: those that
+/// follow the deformation (pressure) converge too, but not quadratically.
 /// Components beyond the dimension of the body are no unknowns. The body must outlive the problem.
 template <class Body, class... Terms>
 class StaticProblem {
