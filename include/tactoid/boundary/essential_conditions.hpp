@@ -110,14 +110,39 @@ class EssentialConditions {
           const double ahead = 0.5 * force * time_step * rate;
           work += multiplier[row] / time_step * 0.5 * (last.rate + rate) + ahead - last.ahead;
           reactions_[motion][c] += force;
-          last = {target[row], rate, ahead};
+          last = {target[row], rate, ahead, force};
         } else {
-          last = {target[row], identity_ ? velocity[particle][c] : direction.interpolate(k, velocity, c), 0.0};
+          last = {target[row], identity_ ? velocity[particle][c] : direction.interpolate(k, velocity, c), 0.0, 0.0};
         }
       }
     }
     return work;
   }
+
+  /// Sets prescribed values at `time` in a field of displacements; for unknowns that are values at the particles.
+  void prescribe(double time, Field& displacement) const {
+    for_each_value([&](int c, std::size_t, const Condition& condition) { displacement[condition.particle][c] = prescribed(condition, time)[c]; });
+  }
+
+  /// Takes the forces that hold the prescribed values (N per particle) as those of the conditions at `time`, the end of a
+  /// step. Returns their work over the step, by the mean of the forces at its ends, J. For unknowns that are values.
+  double accept(double time, double time_step, const Field& holding) {
+    double work = 0.0;
+    std::fill(reactions_.begin(), reactions_.end(), Vector3::Zero());
+    std::fill(forces_.begin(), forces_.end(), Vector4::Zero());
+    for_each_value([&](int c, std::size_t k, const Condition& condition) {
+      auto& last = directions_[static_cast<std::size_t>(c)].last[k];
+      const double value = prescribed(condition, time)[c], force = holding[condition.particle][c];
+      work += 0.5 * (last.force + force) * (value - last.value);
+      last = {value, time_step > 0.0 ? (value - last.value) / time_step : last.rate, 0.0, force};
+      reactions_[condition.motion][c] += force;
+      forces_[condition.particle][c] = force;
+    });
+    return work;
+  }
+
+  /// The unknowns are values at the particles, so that conditions are set directly.
+  [[nodiscard]] bool on_values() const { return identity_; }
 
   /// Forces of all conditions on the unknowns in the last step, N; empty without conditions.
   [[nodiscard]] const Field& forces() const { return forces_; }
@@ -133,11 +158,11 @@ class EssentialConditions {
     archive("reactions", reactions_);
     for (int c = 0; c < 3; ++c) {
       auto& last = directions_[static_cast<std::size_t>(c)].last;
-      std::vector<Vector3> flat(last.size());
-      for (std::size_t k = 0; k < last.size(); ++k) flat[k] = {last[k].value, last[k].rate, last[k].ahead};
+      std::vector<Vector4> flat(last.size());
+      for (std::size_t k = 0; k < last.size(); ++k) flat[k] = {last[k].value, last[k].rate, last[k].ahead, last[k].force};
       archive(c == 0 ? "last_x" : c == 1 ? "last_y" : "last_z", flat);
       if constexpr (Archive::restoring)
-        for (std::size_t k = 0; k < last.size(); ++k) last[k] = {flat[k][0], flat[k][1], flat[k][2]};
+        for (std::size_t k = 0; k < last.size(); ++k) last[k] = {flat[k][0], flat[k][1], flat[k][2], flat[k][3]};
     }
   }
 
@@ -161,6 +186,7 @@ class EssentialConditions {
       double value = 0.0;  ///< prescribed value, m
       double rate = 0.0;   ///< its rate in the step, m/s
       double ahead = 0.0;  ///< work taken in advance, J
+      double force = 0.0;  ///< of the condition, N
     };
     std::vector<Last> last;  // of each condition, from the last step
 
@@ -171,6 +197,18 @@ class EssentialConditions {
       return sum;
     }
   };
+
+  /// Calls f(component, number, condition) for all conditions.
+  template <class F>
+  void for_each_value(const F& f) const {
+    for (int c = 0; c < 3; ++c) {
+      const auto& conditions = directions_[static_cast<std::size_t>(c)].conditions;
+      for (std::size_t k = 0; k < conditions.size(); ++k) f(c, k, conditions[k]);
+    }
+  }
+  [[nodiscard]] Vector3 prescribed(const Condition& condition, double time) const {
+    return motions_[condition.motion].value((*reference_)[condition.particle].head<3>(), time);
+  }
 
   void factorize(Direction& direction, const ParticleValues& values) const {
     const ValueRows& all = values.rows();

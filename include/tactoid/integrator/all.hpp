@@ -1,5 +1,6 @@
 #pragma once
 
 #include <tactoid/integrator/central_difference.hpp>
+#include <tactoid/integrator/implicit_dynamics.hpp>
 #include <tactoid/integrator/integrator.hpp>
 #include <tactoid/integrator/static_newton.hpp>

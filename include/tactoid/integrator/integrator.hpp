@@ -6,6 +6,14 @@
 
 namespace tactoid {
 
+/// Whether the integrator I says `static constexpr bool synchronous = true`: velocities belong to the end of the step, as in
+/// implicit schemes, and the director is one of its unknowns. Others keep velocities at the middle of the steps.
+template <class I>
+inline constexpr bool synchronous = [] {
+  if constexpr (requires { I::synchronous; }) return bool(I::synchronous);
+  else return false;
+}();
+
 /// Advances a system in time.
 ///
 /// The system (a Simulation) offers
@@ -15,6 +23,7 @@ namespace tactoid {
 ///   void kick(double dt);                 v ← v + dt M⁻¹ f
 ///   void drift(double dt);                u ← u + dt v, then the essential conditions at time + dt; time ← time + dt
 ///   void evaluate();                      forces, energies and directors at the present state
+/// One that is synchronous uses what ImplicitDynamics does (implicit_dynamics.hpp).
 /// `initialize` is called once, after the first evaluate(); `step` takes one step, not beyond the time `until`.
 template <class I, class System>
 concept Integrator =

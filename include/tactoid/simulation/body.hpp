@@ -123,7 +123,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
 
   // --- state -------------------------------------------------------------------------------------------------
   Field displacement;   ///< unknowns u_I (values at the particles, or coefficients), m
-  Field velocity;       ///< their rates at the middle of the last step, m/s
+  Field velocity;       ///< their rates, `velocity_lag` of the last step before the present instant, m/s
+  double velocity_lag = 0.5;  ///< ½ for leapfrog integrators, 0 where velocities belong to the end of the step
   Field force;          ///< forces conjugate to the unknowns, N
   Field director;       ///< h_I; empty without a director field
   Field director_flux;  ///< −Σ_q V_q J (∇₀h C⁻¹) G_qI, m; the diffusion of the director
@@ -443,7 +444,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       rows::Gradient flux[W], flux_h[W];
       rows::to_points(response.stress, volume, flux);
       if constexpr (has_director) {
-        const Tensor<T> middle = state.deformation_gradient - state.deformation_rate * T(0.5 * time_step);
+        const Tensor<T> middle = state.deformation_gradient - state.deformation_rate * T(velocity_lag * time_step);
         const Tensor<T> A = Director::rate_operator(velocity_gradient(state.deformation_rate, inverse(middle)));
         const Tensor<T> diffusion = state.director_gradient * inverse_C * F.determinant;
         rows::to_points(diffusion, volume, flux_h);

@@ -25,20 +25,20 @@ struct BodyFields {
     volume = body.nodal_volumes();
   }
 
-  /// Positions at the present state, velocities extrapolated by half of the last step to the same instant with
-  /// the forces of the step before; forces are cleared.
+  /// Positions at the present state, velocities extrapolated by `lag` (s), how far they are behind it, with the forces
+  /// of the step before; forces are cleared.
   template <class Body>
-  void refresh(const Body& body, double last_step) {
+  void refresh(const Body& body, double lag) {
     if (body.particle_values().identity()) {
       parallel_for(body.size(), [&](std::size_t i) {
         position[i] = reference[i] + body.displacement[i];
-        velocity[i] = body.velocity[i] + (0.5 * last_step / body.masses()[i]) * body.force[i];
+        velocity[i] = body.velocity[i] + (lag / body.masses()[i]) * body.force[i];
         force[i].setZero();
       });
     } else {
       position = body.at_particles(body.displacement);
       Field v = body.velocity;
-      for (std::size_t i = 0; i < v.size(); ++i) v[i] += (0.5 * last_step / body.masses()[i]) * body.force[i];
+      for (std::size_t i = 0; i < v.size(); ++i) v[i] += (lag / body.masses()[i]) * body.force[i];
       velocity = body.at_particles(v);
       for (std::size_t i = 0; i < position.size(); ++i) position[i] += reference[i];
       std::fill(force.begin(), force.end(), Vector4::Zero());

@@ -17,6 +17,7 @@ struct ContactAnchoring {
   FirstTouch touch{};                ///< which particles have touched
   int countdown = 0;                 ///< steps until the next look
   bool fresh = false;                ///< gaps were measured in this step
+  double last_time = -1.0;           ///< of the last step that was counted, s: trials of an implicit step are none
 
   /// Throws ParameterError unless capture_distance > 0 and interval >= 1, GeometryError for a cloud without facets.
   template <int D>
@@ -28,7 +29,9 @@ struct ContactAnchoring {
   }
 
   /// Measures the gaps in every `interval`-th step; no force, no energy.
-  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) {
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time) {
+    if (!(time > last_time)) return {};
+    last_time = time;
     if (countdown-- == 0) {
       countdown = interval - 1;
       fresh = true;
@@ -55,6 +58,7 @@ struct ContactAnchoring {
     archive.part("touch", touch);
     archive("countdown", countdown);
     archive("fresh", fresh);
+    archive("last_time", last_time);
   }
 };
 

@@ -43,6 +43,9 @@ namespace tactoid {
 template <class BodiesType, class ContactsType, class BoundariesType, class IntegratorType>
 class Simulation;
 
+template <class SimulationType>
+class SimulationProblem;
+
 /// The implementation of Simulation: all types are known, so nothing is called through a pointer.
 template <class... B, class... C, class... T, class I>
 class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
@@ -50,6 +53,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   static constexpr std::size_t body_count = sizeof...(B);                                 ///< number of bodies
   static constexpr int dimension = std::tuple_element_t<0, std::tuple<B...>>::dimension;  ///< 1, 2 or 3: that of all bodies
   static_assert(((B::dimension == dimension) && ...), "All bodies of a Simulation have the same dimension.");
+  /// How far velocities are behind the displacements, as a share of the step: ½ but for integrators that say `synchronous`.
+  static constexpr double velocity_lag = synchronous<I> ? 0.0 : 0.5;
 
   /// Composes, checks and evaluates the first state; takes bodies, contacts, terms and integrator over. Throws
   /// ParameterError, GeometryError, and ComputationError where the first state has an inverted point.
@@ -58,6 +63,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         integrator_(std::move(integrator)) {
     static_assert(Integrator<I, Simulation>, "The last argument of a Simulation is an Integrator.");
     for_each_body([&](auto& body, std::size_t b) {
+      body.velocity_lag = velocity_lag;
       fields_[b].prepare(body);
       std::vector<PrescribedMotion> motions;
       for_each_boundary([&](auto& on, std::size_t) {
@@ -125,6 +131,16 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   template <class F>
   void for_each_body(const F& f) const {
     [&]<std::size_t... N>(std::index_sequence<N...>) { (f(std::get<N>(bodies_), N), ...); }(std::index_sequence_for<B...>{});
+  }
+  /// Calls f(between, number) for every contact, in order: the contact with the numbers of its bodies.
+  template <class F>
+  void for_each_contact(const F& f) {
+    std::apply([&](auto&... c) { std::size_t n = 0; (f(c, n++), ...); }, contacts_);
+  }
+  /// Calls f(on, number) for every boundary term and prescribed motion, in order: the term with the number of its body.
+  template <class F>
+  void for_each_boundary(const F& f) {
+    std::apply([&](auto&... t) { std::size_t n = 0; (f(t, n++), ...); }, boundaries_);
   }
 
   /// Pairs of quadrature points and particles that one step visits.
@@ -256,13 +272,74 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
 
   /// Forces and energies at the present state; histories and directors are advanced by the last step.
   void evaluate() {
-    TermEnergy contact_energy, boundary_energy;
-    for_each_body([&](auto& body, std::size_t b) { fields_[b].refresh(body, last_step_); });
+    const StepEnergies energies = forces(time_, time_, last_step_);
+    for_each_body([&](const auto& body, std::size_t) { check(body); });
+    // All bodies are sound: what the step has brought is kept.
+    for_each_body([&](auto& body, std::size_t) {
+      body.accept_histories();
+      if constexpr (std::decay_t<decltype(body)>::has_director && !synchronous<I>) advance_director(body, last_step_);
+    });
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      if constexpr (requires { between.contact.anchor(std::get<Pair::first>(bodies_)); }) between.contact.anchor(std::get<Pair::first>(bodies_));
+    });
+    book(energies);
+    drifted_ = false;
+  }
+
+  // --- what an implicit integrator uses ----------------------------------------------------------------------
+  /// The simulation as equations for the state at the end of a step; for the length of a step.
+  [[nodiscard]] auto implicit_problem() {
+    static_assert(synchronous<I>, "Implicit problems are those of integrators that say `static constexpr bool synchronous = true`.");
+    return SimulationProblem<Simulation>(*this);
+  }
+
+  /// Forces at the displacements, velocities and directors that the bodies have now, as at the end of a step of `time_step`
+  /// (s) from time(). Nothing is kept: histories are advanced only tentatively, and contacts are told the time at the start
+  /// of the step, so that what they remember stays. False where a point is inverted or something is not finite.
+  [[nodiscard]] bool try_state(double time_step) {
+    (void)forces(time_, time_ + time_step, time_step);
+    bool sound = true;
+    for_each_body([&](const auto& body, std::size_t) {
+      sound = sound && body.failed_point() == body.table().points() &&
+              std::all_of(body.force.begin(), body.force.end(), [](const Vector4& f) { return f.allFinite(); });
+    });
+    return sound;
+  }
+
+  /// Keeps the present state as that at the end of a step of `time_step` (s): histories, what contacts remember, energies.
+  /// `holding` are the forces that hold the prescribed values of each body, N per particle.
+  void accept_state(double time_step, const std::array<Field, body_count>& holding) {
+    time_ += time_step;
+    last_step_ = time_step;
+    for_each_body([&](auto&, std::size_t b) {
+      if (!essential_[b].empty()) ledger_.external_work += essential_[b].accept(time_, time_step, holding[b]);
+    });
+    evaluate();
+  }
+
+  /// Sets the prescribed values at the end of a step of `time_step` (s).
+  void prescribe(double time_step) {
+    for_each_body([&](auto& body, std::size_t b) { essential_[b].prescribe(time_ + time_step, body.displacement); });
+  }
+
+ private:
+  /// What a step books in the ledger.
+  struct StepEnergies {
+    BodyTotals internal;
+    TermEnergy contact, boundary;
+    double kinetic = 0.0;
+  };
+
+  /// Forces and energies at the present state; histories advanced by `time_step` wait for being accepted.
+  StepEnergies forces(double contact_time, double time, double time_step) {
+    StepEnergies energies;
+    for_each_body([&](auto& body, std::size_t b) { fields_[b].refresh(body, velocity_lag * time_step); });
     term_rates_.fill(0.0);
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
       const ParticleFields a = fields_[Pair::first].view(), b = fields_[Pair::second].view();
-      contact_energy += between.contact.apply(a, b, time_);
+      energies.contact += between.contact.apply(a, b, contact_time);
       const double rate = between.contact.stiffness_rate(a, b);
       term_rates_[Pair::first] += rate;
       term_rates_[Pair::second] += rate;
@@ -270,47 +347,47 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_boundary([&](auto& on, std::size_t) {
       if constexpr (!is_motion<decltype(on)>) {
         constexpr std::size_t b = std::decay_t<decltype(on)>::body;
-        boundary_energy += on.term.apply(fields_[b].view(), time_);
+        energies.boundary += on.term.apply(fields_[b].view(), time);
         term_rates_[b] += on.term.stiffness_rate(fields_[b].view());
       }
     });
-    BodyTotals internal;
-    double kinetic = 0.0;
     for_each_body([&](auto& body, std::size_t b) {
       parallel_for(body.size(), [&](std::size_t i) { body.force[i].setZero(); });
       body.particle_values().distribute(fields_[b].force, body.force);
-      internal += body.add_internal_forces(last_step_, true);
-      check(body);
-      kinetic += parallel_sum(body.size(), [&](std::size_t i) {
+      energies.internal += body.add_internal_forces(time_step, true);
+      energies.kinetic += parallel_sum(body.size(), [&](std::size_t i) {
         return 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
       });
     });
-    // All bodies are sound: what the step has brought is kept.
-    for_each_body([&](auto& body, std::size_t) {
-      body.accept_histories();
-      if constexpr (std::decay_t<decltype(body)>::has_director) advance_director(body, last_step_);
-    });
-    for_each_contact([&](auto& between, std::size_t) {
-      using Pair = std::decay_t<decltype(between)>;
-      if constexpr (requires { between.contact.anchor(std::get<Pair::first>(bodies_)); }) between.contact.anchor(std::get<Pair::first>(bodies_));
-    });
-    ledger_.kinetic = kinetic;
-    ledger_.strain = internal.strain_energy;
-    ledger_.stabilization = internal.stabilization_energy;
-    ledger_.adhesion = contact_energy.potential;
-    ledger_.surface = boundary_energy.potential;
-    // The laws' powers are taken with the velocity of the middle of the step, the terms' at its ends.
-    const double external_power = contact_energy.external_power + boundary_energy.external_power;
-    const double dissipated_power = contact_energy.dissipated_power + boundary_energy.dissipated_power;
-    ledger_.external_work += last_step_ * (0.5 * (external_power_ + external_power) + internal.active_power);
-    ledger_.dissipated += last_step_ * (0.5 * (dissipated_power_ + dissipated_power) + internal.dissipated_power);
+    if constexpr (requires { integrator_.inertia; })
+      if (!integrator_.inertia) energies.kinetic = 0.0;
+    return energies;
+  }
+
+  /// Enters a step in the ledger.
+  void book(const StepEnergies& energies) {
+    ledger_.kinetic = energies.kinetic;
+    ledger_.strain = energies.internal.strain_energy;
+    ledger_.stabilization = energies.internal.stabilization_energy;
+    ledger_.adhesion = energies.contact.potential;
+    ledger_.surface = energies.boundary.potential;
+    // The terms' powers are those at the ends of the step; the laws' too, unless velocities are those of its middle.
+    double external_power = energies.contact.external_power + energies.boundary.external_power;
+    double dissipated_power = energies.contact.dissipated_power + energies.boundary.dissipated_power;
+    if constexpr (synchronous<I>) {
+      external_power += energies.internal.active_power;
+      dissipated_power += energies.internal.dissipated_power;
+    } else {
+      ledger_.external_work += last_step_ * energies.internal.active_power;
+      ledger_.dissipated += last_step_ * energies.internal.dissipated_power;
+    }
+    ledger_.external_work += 0.5 * last_step_ * (external_power_ + external_power);
+    ledger_.dissipated += 0.5 * last_step_ * (dissipated_power_ + dissipated_power);
     external_power_ = external_power;
     dissipated_power_ = dissipated_power;
     if (last_step_ > 0.0) ledger_.note_scale();
-    drifted_ = false;
   }
 
- private:
   template <class Place>
   static constexpr bool is_motion = std::is_same_v<std::decay_t<decltype(std::declval<Place>().term)>, PrescribedMotion>;
 
@@ -322,21 +399,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     observer.begin(*this);
   }
 
-  template <class F>
-  void for_each_contact(const F& f) {
-    std::apply([&](auto&... c) { std::size_t n = 0; (f(c, n++), ...); }, contacts_);
-  }
-  template <class F>
-  void for_each_boundary(const F& f) {
-    std::apply([&](auto&... t) { std::size_t n = 0; (f(t, n++), ...); }, boundaries_);
-  }
-
   /// Half a step with the forces at the present state; those of the conditions are the last ones.
   template <class Body>
   [[nodiscard]] Vector4 present_velocity(const Body& body, std::size_t b, std::size_t i) const {
     Vector4 force = body.force[i];
     if (!essential_[b].empty()) force += essential_[b].forces()[i];
-    return body.velocity[i] + (0.5 * last_step_ / body.masses()[i]) * force;
+    return body.velocity[i] + (velocity_lag * last_step_ / body.masses()[i]) * force;
   }
 
   /// h ← one Cayley step of Dh/Dt = A h + D (diffusion − J r(h)), at all particles whose director is free.

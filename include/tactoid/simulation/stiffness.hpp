@@ -105,12 +105,19 @@ void for_each_block(const StiffnessMatrix& K, std::span<const TableEntry> row, c
 
 }  // namespace detail
 
+/// In which sense a stiffness is meant.
+struct StepTangent {
+  double rate_factor = 0.0;  ///< ∂v/∂u of the scheme, 1/s; 0: the velocity is held at zero
+  double time_step = 0.0;    ///< during which laws with memory forget, s
+};
+
 /// Stiffness K = −∂f/∂u of the internal forces at the present state of a body, D N × D N with D its dimension:
 ///   K = Σ_q V_q Gᵀ A G + the stiffness of the stabilisation,   A = ∂P/∂F by automatic differentiation.
-/// Velocities are taken as zero; laws with memory answer as to a sudden change, and the director is held. Symmetric
-/// for laws with an energy. For statics, vibration and implicit steps; the explicit steps need none.
+/// By default velocities are taken as zero, and laws with memory answer as to a sudden change; `step` gives −df/du of an
+/// implicit step instead. The director is held. Symmetric for laws with an energy, without rates. For statics, vibration and
+/// implicit steps; the explicit steps need none.
 template <class Body>
-[[nodiscard]] StiffnessMatrix assemble_stiffness(const Body& body) {
+[[nodiscard]] StiffnessMatrix assemble_stiffness(const Body& body, const StepTangent& step = {}) {
   constexpr int D = Body::dimension;
   const PointTable& table = body.table();
   StiffnessMatrix K = detail::stiffness_pattern<D>(table);
@@ -123,9 +130,14 @@ template <class Body>
         auto row = table.row(q);
         if (is_padding(table, q, table.offsets[q + 1] - 1)) row = row.first(row.size() - 1);
         PointState<double> state;
-        rows::Gradient du, dh;
+        state.time_step = step.time_step;
+        rows::Gradient du, dv, dh;
         rows::gather(table.row(q), body.displacement.data(), du);
         if (table.axisymmetric) rows::turn_around_axis(du);
+        if (step.rate_factor > 0.0) {
+          rows::gather(table.row(q), body.velocity.data(), dv);
+          if (table.axisymmetric) rows::turn_around_axis(dv);
+        }
         if constexpr (Body::has_director) {
           rows::gather(table.row(q), body.director.data(), dh);
           if (table.axisymmetric) rows::turn_around_axis(dh);
@@ -134,12 +146,13 @@ template <class Body>
         for (int k = 0; k < 3; ++k)
           for (int i = 0; i < 3; ++i) {
             state.deformation_gradient(i, k) += du.column[k][i];
+            state.deformation_rate(i, k) = dv.column[k][i];
             state.director_gradient(i, k) = dh.column[k][i];
           }
         const int l = static_cast<int>((q - region.begin) % static_cast<std::size_t>(region.width));
         const auto history = detail::history_at_lane<Law, typename std::decay_t<decltype(region)>::Scalar>(
             region.histories[region.block(q)], l);
-        const Tangent A = tangent(region.law(q), state, history);
+        const Tangent A = tangent(region.law(q), state, history, step.rate_factor);
         std::vector<Eigen::Matrix<double, D, 9>> left(row.size());  // V G_a · A
         for (std::size_t a = 0; a < row.size(); ++a)
           for (int i = 0; i < D; ++i) {
@@ -149,7 +162,8 @@ template <class Body>
           }
         Eigen::MatrixXd hold;
         if (modulus > 0.0)
-          hold = detail::stabilization_stiffness(table, q, row.size(), modulus * table.stabilization_scale[q]);
+          hold = detail::stabilization_stiffness(table, q, row.size(), modulus * table.stabilization_scale[q] *
+                                                                           (1.0 + region.stabilization.damping_time * step.rate_factor));
         detail::for_each_block<D>(K, row, [&](std::size_t a, std::size_t b, int place) {
           for (int j = 0; j < D; ++j) {
             double* column =
