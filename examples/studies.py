@@ -26,7 +26,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 STUDIES = ["bar_hysteresis", "cell_compression", "spreading_uniform", "spreading_axisymmetric", "spreading_graded", "wavy_front",
-           "durotaxis"]  # in the order of the page
+           "durotaxis", "spreading_slow"]  # in the order of the page
 HEAD = """# What the studies gave
 
 Written by `/usr/bin/python3 examples/studies.py --publish` from the files of its runs, {count} runs of {minutes:.0f} processor

@@ -51,6 +51,11 @@ struct SpreadingCase {
   }
   /// Everything on: both contacts, anchoring, what is added, surface tension, the fixed bottom.
   [[nodiscard]] auto simulation() const {
+    return simulation(CentralDifference{.safety = p.safety, .time_step = p.time_step, .min_time_step = p.min_time_step});
+  }
+  /// The same under another integrator.
+  template <class Integrator>
+  [[nodiscard]] auto simulation(const Integrator& integrator) const {
     auto cell_body = cell();
     auto substrate_body = substrate();
     const auto bottom =
@@ -58,13 +63,14 @@ struct SpreadingCase {
     auto contacts = std::apply(
         [&](auto... more) {
           return Contacts{between<0, 1>(p.ligand_receptor()), between<0, 1>(p.van_der_waals_force()),
-                          between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30}), std::move(more)...};
+                          between<0, 1>(ContactAnchoring{.capture_distance = p.anchoring ? p.bond_range : 1e-30, .interval = synchronous<Integrator> ? 1 : 10}),
+                          std::move(more)...};
         },
         added.contacts());
     return Simulation{
         Bodies{std::move(cell_body), std::move(substrate_body)}, std::move(contacts),
         Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
-        CentralDifference{.safety = p.safety, .time_step = p.time_step, .min_time_step = p.min_time_step}};
+        integrator};
   }
 };
 template <MaterialSource Law>

@@ -154,6 +154,13 @@ class SpreadingRecorder {
     summary.set("pairs", simulation.pairs());
     const double visits = static_cast<double>(steps_taken) * static_cast<double>(simulation.pairs());
     summary.set("ns_per_pair", visits > 0.0 ? 1e9 * (wall_seconds - seconds_) / visits : 0.0);
+    if constexpr (requires { simulation.integrator().report(); }) {
+      const auto& report = simulation.integrator().report();
+      summary.set("newton_iterations", report.newton_iterations);
+      summary.set("linear_iterations", report.linear_iterations);
+      summary.set("factorizations", report.factorizations);
+      summary.set("rejected_steps", report.rejected + report.failed);
+    }
     summary.set("threads", thread_count());
     summary.set("version", version);
     summary.set("completed", completed);

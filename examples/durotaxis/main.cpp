@@ -5,7 +5,7 @@
 //   durotaxis --activity=-5kPa --director uniform --tethers stochastic --soft 2 --stiff 50
 #include "common/program.hpp"
 #include "common/spreading_run.hpp"
-#include "tethers.hpp"
+#include "common/tethers.hpp"
 
 int main(int argc, char** argv) {
   using namespace tactoid;

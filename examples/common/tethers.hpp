@@ -13,7 +13,7 @@
 
 namespace tactoid {
 
-/// Tethers between cell and substrate: what this study adds to SpreadingCase. Rates are those of real bonds, times `rate_factor`.
+/// Tethers between cell and substrate, which a study adds to SpreadingCase. Rates are those of real bonds, times `rate_factor`.
 struct Tethers {
   std::string mode = "mean";           ///< off, mean (field) or stochastic
   double density = 300e12;             ///< receptors per area of the cell, 1/m²

@@ -1,0 +1,49 @@
+// A viscous cell of revolution spreads on a substrate for minutes, by implicit steps. See README.md beside this file.
+//
+//   spreading_slow --out out/spreading_slow
+//   spreading_slow --elasticity 1kPa --viscosity 100Pa.s --tethers off
+#include "common/program.hpp"
+#include "common/spreading_run.hpp"
+#include "common/tethers.hpp"
+
+namespace {
+
+using namespace tactoid;
+
+/// The axisymmetric cell on its substrate with tethers, under an implicit integrator.
+struct SlowCase : SpreadingCase<YangVisco<>, 2, Tethers> {
+  ImplicitDynamics integrator;
+
+  [[nodiscard]] auto simulation() const { return SpreadingCase::simulation(integrator); }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_program("spreading_slow", [&] {
+    SpreadingParameters p{.viscosity = 10.0, .activity = 0.0, .director = "radial", .preset = "elastic", .van_der_waals = 100.0, .end_time = 600.0};
+    // Steps are as long as the shape allows: what they take out of fast motion shows in the balance of energy, and stops no run.
+    SpreadingRun run{.out = "out/spreading_slow", .frames = 24, .samples = 240, .energy_limit = 1e9};
+    double elasticity = 10e3;
+    // Bonds are as long as the gap at which adhesion holds the surfaces.
+    Tethers tethers{.length = 100e-9, .capture_distance = 150e-9, .rate_factor = 1.0};
+    ImplicitDynamics integrator{.inertia = true, .tolerance = 1e-4, .newton_tolerance = 1e-6};
+    Options options("spreading_slow", "A viscous cell of revolution adheres to and spreads on a substrate for minutes, in its meridian section.");
+    options.add_quantity("elasticity", &elasticity, Quantity::pressure, Range::positive(), "Young's modulus of the substrate");
+    options.add("inertia", &integrator.inertia, "Keep inertia; without it all forces balance at every instant");
+    options.add("tolerance", &integrator.tolerance, Range::inside(0.0, 1.0), "Local error of a step over the size of a body");
+    options.add_quantity("max-time-step", &integrator.max_time_step, Quantity::time, Range::positive(), "Longest step");
+    tethers.add_to(options);
+    p.add_to(options);
+    run.add_to(options);
+    if (!options.parse(argc, argv)) return 0;
+    p.validate_axisymmetric();
+    integrator.time_step = p.time_step;
+    integrator.min_time_step = p.min_time_step;
+    integrator.newton_tolerance = 1e-2 * integrator.tolerance;
+    // E = 3 × the shear modulus 2 (C₁ + C₂): λ is large.
+    const double factor = elasticity / (6.0 * (p.substrate_c1 + p.substrate_c2));
+    run(SlowCase{{p, p.substrate_law(factor), tethers}, integrator}, options);
+    return 0;
+  });
+}

@@ -1,0 +1,95 @@
+"""A viscous cell over minutes, by implicit steps: against explicit ones, on three substrates, with viscosity and activity."""
+
+import numpy as np
+import matplotlib.pyplot as plt
+
+from study_tools import UM, Case, number, percent, resolution, table
+
+TITLE = "Minutes: a viscous cell by implicit steps"
+# The paper's cell, to compare the steps: spreading_axisymmetric takes explicit ones.
+PAPER = [("end-time", "4.5us"), ("activity", "0Pa"), ("director", "radial"), ("frames", "2"), ("samples", "90"), ("resolution", resolution(1.0))]
+EXPLICIT = [[("preset", "printed"), ("stiffness", "10")], [("preset", "elastic"), ("stiffness", "2")]]
+IMPLICIT = [[("preset", "printed"), ("elasticity", "819.72kPa")], [("preset", "elastic"), ("elasticity", "163.944kPa")]]
+SLOW = [("activity", "0Pa"), ("frames", "4"), ("samples", "120"), ("tolerance", "3e-4"), ("resolution", resolution(1.0))]
+ELASTICITIES = ["1kPa", "10kPa", "100kPa"]
+STICKING = [[("tethers", "off")], []]
+VISCOSITIES = ["10Pa.s", "100Pa.s", "1000Pa.s"]
+ACTIVITIES = ["-1Pa", "-5Pa", "-20Pa", "-100Pa", "-1kPa"]
+SWEEPS = [
+    ("explicit", "spreading_axisymmetric", PAPER, EXPLICIT),
+    ("implicit", "spreading_slow", [*PAPER, ("viscosity", "3mPa.s"), ("van-der-waals", "1e6"), ("tethers", "off")], IMPLICIT),
+    ("substrate", "spreading_slow", [*SLOW, ("end-time", "600s")], [[("elasticity", e), *s] for e in ELASTICITIES for s in STICKING]),
+    ("viscosity", "spreading_slow", [*SLOW, ("end-time", "600s")], [[("viscosity", v)] for v in VISCOSITIES[1:]]),
+    ("activity", "spreading_slow", [("end-time", "60s"), ("frames", "2"), ("samples", "300"), ("tolerance", "3e-4"), ("resolution", resolution(1.0))],
+     [[("activity", a)] for a in ACTIVITIES]),
+]
+
+
+def exponent(case, first, last):
+    """Of R ~ t^n between two times, s, by least squares over the logarithms."""
+    if case.history is None:
+        return float("nan")
+    t, r = case.history["time"], case.history["contact_radius"]
+    chosen = (t >= first) & (t <= last) & (r > 0.0)
+    if np.count_nonzero(chosen) < 3:
+        return float("nan")
+    return float(np.polyfit(np.log(t[chosen]), np.log(r[chosen]), 1)[0])
+
+
+def report(folder):
+    text = "![Contact radius against time](spreading_slow/slow.png)\n\n"
+    pairs = [(Case(folder / "explicit", e), Case(folder / "implicit", i)) for e, i in zip(EXPLICIT, IMPLICIT)]
+    rows = []
+    for e, (one, other) in zip(EXPLICIT, pairs):
+        largest = max((abs(percent(other.at("spread_area", t), one.at("spread_area", t))) for t in np.linspace(1e-6, 4.5e-6, 71)), default=float("nan"))
+        rows.append([", ".join(v for _, v in e), number(one.summary.get("steps", float("nan")), 5), number(other.summary.get("steps", float("nan")), 5),
+                     number(one.at("spread_area", 4.5e-6) * UM**2, 5), number(other.at("spread_area", 4.5e-6) * UM**2, 5), f"{largest:.2f} %"])
+    text += "**The paper's cell**, explicit against implicit steps, spreading area, µm²:\n\n"
+    text += table(["", "explicit steps", "implicit steps", "explicit, 4.5 µs", "implicit, 4.5 µs", "largest difference from 1 µs on"], rows) + "\n"
+
+    rows = []
+    cases = {}
+    for e in ELASTICITIES:
+        for s, what in zip(STICKING, ("no tethers", "tethers")):
+            case = cases[e, what] = Case(folder / "substrate", [("elasticity", e), *s])
+            rows.append([f"{e}, {what}", *(number(case.at("spread_area", t) * UM**2, 4) for t in (5.0, 60.0, 300.0, 600.0)),
+                         number(exponent(case, 5.0, 60.0), 2), number(exponent(case, 60.0, 600.0), 2), number(case.summary.get("steps", float("nan")), 5),
+                         number(case.summary.get("wall_seconds", float("nan")) / 10.0, 3)])
+    text += "**Spreading area**, µm², 10 Pa s, no active stress; exponents of the contact radius in time; seconds of the processor per minute:\n\n"
+    text += table(["", "5 s", "1 min", "5 min", "10 min", "5 s to 1 min", "1 to 10 min", "steps", "s per minute"], rows) + "\n"
+    rows = []
+    for v in VISCOSITIES:
+        case = cases["10kPa", "tethers"] if v == VISCOSITIES[0] else Case(folder / "viscosity", [("viscosity", v)])
+        cases[v] = case
+        rows.append([v.replace(".", " "), *(number(case.at("spread_area", t) * UM**2, 4) for t in (5.0, 60.0, 300.0, 600.0)), number(exponent(case, 5.0, 60.0), 2),
+                     number(case.summary.get("steps", float("nan")), 5)])
+    text += "**Viscosity**, on 10 kPa with tethers:\n\n" + table(["", "5 s", "1 min", "5 min", "10 min", "5 s to 1 min", "steps"], rows) + "\n"
+    rows = []
+    for a in ACTIVITIES:
+        case = Case(folder / "activity", [("activity", a)])
+        end = case.history["time"][-1] if case.history is not None and len(case.history["time"]) else float("nan")
+        rows.append([a, "60 s" if case.completed else f"ends at {end:.3g} s", number(2.0 * 10.0 / abs(float(a.replace("kPa", "e3").replace("Pa", ""))), 2)])
+    text += "**Active stress** at 10 Pa s, and 2μ/|ζ|, s, the time in which it draws the gel out by its own length:\n\n" + table(["ζ", "", "2μ/abs(ζ)"], rows)
+    return text, {"slow": draw(cases)}
+
+
+def draw(cases):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.6), layout="constrained", dpi=85)
+    for k, e in enumerate(ELASTICITIES):
+        for what, style in (("no tethers", "--"), ("tethers", "-")):
+            history = cases[e, what].history
+            if history is not None:
+                left.loglog(history["time"][1:], history["contact_radius"][1:] * UM, style, color=f"C{k}", label=f"{e}, {what}")
+    for k, v in enumerate(VISCOSITIES):
+        history = cases[v].history
+        if history is not None:
+            right.loglog(history["time"][1:], history["contact_radius"][1:] * UM, color=f"C{k + 3}", label=v.replace(".", " "))
+    for axis in (left, right):
+        time = np.array([5.0, 40.0])
+        axis.loglog(time, 1.9 * (time / 5.0) ** 0.25, color="0.6", linewidth=0.8)
+        axis.text(14.0, 2.65, "t^¼", color="0.4", fontsize=8)
+        axis.set(xlabel="time (s)", ylabel="contact radius (µm)", xlim=(4.0, 700.0))
+        axis.legend(fontsize=7)
+    left.set_title("10 Pa s, three substrates")
+    right.set_title("10 kPa, tethers, three viscosities")
+    return figure
