@@ -2,6 +2,8 @@
 //
 //   spreading_slow --out out/spreading_slow
 //   spreading_slow --elasticity 1kPa --viscosity 100Pa.s --tethers off
+#include <algorithm>
+
 #include "common/program.hpp"
 #include "common/spreading_run.hpp"
 #include "common/tethers.hpp"
@@ -21,10 +23,11 @@ struct SlowCase : SpreadingCase<YangVisco<>, 2, Tethers> {
 
 int main(int argc, char** argv) {
   return run_program("spreading_slow", [&] {
-    SpreadingParameters p{.viscosity = 10.0, .activity = 0.0, .director = "radial", .preset = "elastic", .van_der_waals = 100.0, .end_time = 600.0};
+    SpreadingParameters p{.viscosity = 10.0, .activity = 0.0, .director = "radial", .preset = "elastic", .van_der_waals = 100.0, .min_time_step = 0.0,
+                          .end_time = 600.0};
     // Steps are as long as the shape allows: what they take out of fast motion shows in the balance of energy, and stops no run.
     SpreadingRun run{.out = "out/spreading_slow", .frames = 24, .samples = 240, .energy_limit = 1e9};
-    double elasticity = 10e3;
+    double elasticity = 10e3, longest = 0.0;
     // Bonds are as long as the gap at which adhesion holds the surfaces.
     Tethers tethers{.length = 100e-9, .capture_distance = 150e-9, .rate_factor = 1.0};
     ImplicitDynamics integrator{.inertia = true, .tolerance = 1e-4, .newton_tolerance = 1e-6};
@@ -32,14 +35,17 @@ int main(int argc, char** argv) {
     options.add_quantity("elasticity", &elasticity, Quantity::pressure, Range::positive(), "Young's modulus of the substrate");
     options.add("inertia", &integrator.inertia, "Keep inertia; without it all forces balance at every instant");
     options.add("tolerance", &integrator.tolerance, Range::inside(0.0, 1.0), "Local error of a step over the size of a body");
-    options.add_quantity("max-time-step", &integrator.max_time_step, Quantity::time, Range::positive(), "Longest step");
+    options.add_quantity("max-time-step", &longest, Quantity::time, Range::non_negative(), "Longest step; 0: none");
     tethers.add_to(options);
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
     p.validate_axisymmetric();
     integrator.time_step = p.time_step;
-    integrator.min_time_step = p.min_time_step;
+    if (longest > 0.0) integrator.max_time_step = longest;
+    // A run whose points are about to be inverted would take ever shorter steps.
+    integrator.min_time_step = p.min_time_step > 0.0 ? p.min_time_step : 1e-8 * p.end_time;
+    integrator.first_time_step = std::max(integrator.min_time_step, 1e-5 * p.end_time);
     integrator.newton_tolerance = 1e-2 * integrator.tolerance;
     // E = 3 × the shear modulus 2 (C₁ + C₂): λ is large.
     const double factor = elasticity / (6.0 * (p.substrate_c1 + p.substrate_c2));

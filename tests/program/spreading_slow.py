@@ -20,7 +20,7 @@ from continued_run import ENVIRONMENT, assert_same, interrupt
 from vtu_reader import read_history
 
 PROGRAMS = []
-SMALL = ["--resolution=0.6", "--frames=2", "--samples=10", "--threads=1", "--activity=0", "--director=radial"]
+SMALL = ["--resolution=0.6", "--frames=2", "--samples=10", "--threads=1"]
 
 
 class SpreadingSlow(unittest.TestCase):
@@ -61,14 +61,14 @@ class SpreadingSlow(unittest.TestCase):
         assert_same(self, "whole", "cut", "history.csv", "front.csv")
 
     def test_a_run_that_breaks_down_says_why_and_keeps_its_state(self):
-        # Nothing resists this stress but viscosity: the gel is drawn out within 2μ/|ζ| = 0.2 ms.
-        result = self.run_program("torn", "--activity=-100kPa", "--end-time=1s", "--min-time-step=1us", status=3)
-        self.assertRegex(result.stderr, r"^spreading_slow: ImplicitDynamics found no step at t = 0\.0\S* s: .*\n$")
+        # Nothing resists this stress but viscosity.
+        result = self.run_program("torn", "--activity=-100kPa", "--end-time=10s", status=3)
+        self.assertRegex(result.stderr, r"^spreading_slow: ImplicitDynamics found no step at t = \d\S* s: .*\n$")
         self.assertTrue((self.folder / "torn" / "checkpoint.h5").exists())
 
     def test_bad_input(self):
         for arguments, sentence in [(["--tolerance=0"], "--tolerance = 0 is not allowed"), (["--director=random"], "it is not axisymmetric"),
-                                    (["--elasticity=-1kPa"], "--elasticity"), (["--max-time-step=0s"], "--max-time-step"),
+                                    (["--elasticity=-1kPa"], "--elasticity"), (["--max-time-step=-1s"], "--max-time-step = -1 s is not allowed"),
                                     (["--tolerance=2"], "--tolerance = 2 is not allowed")]:
             result = self.run_program("refused", *arguments, status=2)
             self.assertIn(sentence, result.stderr)

@@ -8,7 +8,7 @@
 #include <Eigen/SparseCore>
 
 #include <tactoid/boundary/boundary.hpp>
-#include <tactoid/boundary/prescribed_motion.hpp>
+#include <tactoid/boundary/essential_conditions.hpp>
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
