@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
-    const Graded substrate{[&](const Vector3& X) {
+    const GradedSubstrate substrate{[&](const Vector3& X) {
       const double angle = std::abs(std::atan2(X[1], X[0]));  // θ, 0 … π
       return p.substrate_law(soft + (stiff - soft) * angle / std::numbers::pi);
     }};
