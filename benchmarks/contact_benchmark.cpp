@@ -9,7 +9,7 @@ using namespace tactoid;
 /// The two clouds with fields at rest, and the number of points that a term samples.
 struct Pair {
   SpreadingParameters p;
-  PointCloud<3> cell = p.cell_cloud(), substrate = p.substrate_cloud();
+  PointCloud<3> cell = p.cell_cloud<3>(), substrate = p.substrate_cloud<3>();
   struct Fields {
     Field reference, position, velocity, force;
     std::vector<double> mass, volume;
@@ -53,20 +53,20 @@ void boundary(benchmark::State& state, Term term, std::size_t points) {
 
 void ligand_receptor(benchmark::State& state) {
   const SpreadingParameters p;
-  contact(state, p.ligand_receptor(), 4 * p.cell_cloud().facets.size());
+  contact(state, p.ligand_receptor(), 4 * p.cell_cloud<3>().facets.size());
 }
 void van_der_waals(benchmark::State& state) {
   const SpreadingParameters p;
-  contact(state, p.van_der_waals_force(), p.cell_cloud().size());
+  contact(state, p.van_der_waals_force(), p.cell_cloud<3>().size());
 }
 void anchoring(benchmark::State& state) {  // looks at the gaps in every tenth step
-  contact(state, ContactAnchoring{}, SpreadingParameters{}.cell_cloud().facets.size());
+  contact(state, ContactAnchoring{}, SpreadingParameters{}.cell_cloud<3>().facets.size());
 }
 void surface_tension(benchmark::State& state) {
-  boundary(state, SurfaceTension{}, 4 * SpreadingParameters{}.cell_cloud().facets.size());
+  boundary(state, SurfaceTension{}, 4 * SpreadingParameters{}.cell_cloud<3>().facets.size());
 }
 void curvature_surface_tension(benchmark::State& state) {
-  boundary(state, CurvatureSurfaceTension{}, 4 * SpreadingParameters{}.cell_cloud().facets.size());
+  boundary(state, CurvatureSurfaceTension{}, 4 * SpreadingParameters{}.cell_cloud<3>().facets.size());
 }
 
 BENCHMARK(ligand_receptor)->Unit(benchmark::kMicrosecond);

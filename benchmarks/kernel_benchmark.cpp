@@ -11,7 +11,7 @@ using namespace tactoid;
 
 /// The cell, and for every particle its neighbours as a kernel takes them.
 struct Rows {
-  PointCloud<3> cloud = SpreadingParameters{}.cell_cloud();
+  PointCloud<3> cloud = SpreadingParameters{}.cell_cloud<3>();
   std::vector<double> supports, volumes = nodal_volumes(cloud);
   NeighborTable table;
   std::vector<KernelNeighbor<3>> near;

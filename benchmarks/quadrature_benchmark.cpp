@@ -17,17 +17,17 @@ void build(benchmark::State& state, const PointCloud<3>& cloud, const Quadrature
 }
 
 void cell_nodal_centroids(benchmark::State& state) {
-  build(state, SpreadingParameters{}.cell_cloud(), NodalCentroids{});
+  build(state, SpreadingParameters{}.cell_cloud<3>(), NodalCentroids{});
 }
 void cell_without_correction(benchmark::State& state) {
-  build(state, SpreadingParameters{}.cell_cloud(), NodalCentroids{.consistency_tolerance = 0.0});
+  build(state, SpreadingParameters{}.cell_cloud<3>(), NodalCentroids{.consistency_tolerance = 0.0});
 }
-void cell_gauss_cells(benchmark::State& state) { build(state, SpreadingParameters{}.cell_cloud(), GaussCells<2>{}); }
+void cell_gauss_cells(benchmark::State& state) { build(state, SpreadingParameters{}.cell_cloud<3>(), GaussCells<2>{}); }
 void substrate_nodal_centroids(benchmark::State& state) {
-  build(state, SpreadingParameters{}.substrate_cloud(), NodalCentroids{});
+  build(state, SpreadingParameters{}.substrate_cloud<3>(), NodalCentroids{});
 }
 void substrate_without_correction(benchmark::State& state) {
-  build(state, SpreadingParameters{}.substrate_cloud(), NodalCentroids{.consistency_tolerance = 0.0});
+  build(state, SpreadingParameters{}.substrate_cloud<3>(), NodalCentroids{.consistency_tolerance = 0.0});
 }
 
 BENCHMARK(cell_nodal_centroids)->Unit(benchmark::kMillisecond);

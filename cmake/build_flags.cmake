@@ -9,6 +9,8 @@ else()
     tactoid_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
                                   $<$<BOOL:${TACTOID_WARNINGS_AS_ERRORS}>:-Werror>)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # The compiler tidies up its memory from 2 GB on, not from 0.1: up to a tenth of its time for a third more memory.
+    target_compile_options(tactoid_build_flags INTERFACE --param=ggc-min-heapsize=2000000)
     # At -O1 g++ does not see that arrays of fixed size are filled by the loops over them.
     target_compile_options(tactoid_build_flags INTERFACE -Wno-maybe-uninitialized)
   endif()

@@ -13,7 +13,7 @@ endif()
 
 set(tactoid_package_dir "${CMAKE_INSTALL_DATADIR}/cmake/tactoid")
 install(
-  TARGETS tactoid
+  TARGETS tactoid tactoid_precompiled
   EXPORT tactoidTargets
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILE_SET with_hdf5 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"

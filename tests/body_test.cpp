@@ -13,6 +13,8 @@
 
 #include "relative.hpp"
 
+namespace body_test {
+
 using namespace tactoid;
 
 namespace {
@@ -392,3 +394,5 @@ TEST_CASE("Bodies reject what does not fit") {
   CHECK_THROWS_WITH_AS(make(Materials{Region{"body", M{.density = -1.0}}}),
                        doctest::Contains("ModifiedMooneyRivlin.density = -1 kg/m^3"), ParameterError);
 }
+
+}  // namespace body_test

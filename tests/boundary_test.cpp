@@ -14,6 +14,8 @@
 
 #include "surface_bodies.hpp"
 
+namespace boundary_test {
+
 using namespace tactoid;
 using tactoid::test::Close;
 using tactoid::test::TestBody;
@@ -297,3 +299,5 @@ TEST_CASE("stiffness rates bound the largest eigenvalue; same bits for one and t
   set_thread_count(threads);
   CHECK(std::memcmp(one.data(), two.data(), one.size() * sizeof(Vector4)) == 0);
 }
+
+}  // namespace boundary_test

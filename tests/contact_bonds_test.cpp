@@ -16,6 +16,8 @@
 
 #include "surface_bodies.hpp"
 
+namespace contact_bonds_test {
+
 using namespace tactoid;
 using tactoid::test::Close;
 using tactoid::test::TestBody;
@@ -386,3 +388,5 @@ TEST_CASE("Wrong parameters of bonds are refused") {
   CHECK(refused({.kinetics = {.catch_rate = -1.0}}, "BondKinetics.catch_rate"));
   CHECK(refused({.kinetics = {.catch_force = infinite}}, "BondKinetics.catch_force"));
 }
+
+}  // namespace contact_bonds_test

@@ -11,6 +11,8 @@
 #include <tactoid/quadrature/nodal_centroids.hpp>
 #include <tactoid/simulation/all.hpp>
 
+namespace contact_simulation_test {
+
 using namespace tactoid;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("a ball that hits a plate fast, with large steps, gains no energy") {
   MESSAGE("energy error ", error / initial, " of the kinetic energy, ", simulation.steps(), " steps");
   CHECK(error < 0.1 * initial);
 }
+
+}  // namespace contact_simulation_test

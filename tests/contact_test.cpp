@@ -9,6 +9,8 @@
 
 #include "surface_bodies.hpp"
 
+namespace contact_test {
+
 using namespace tactoid;
 using tactoid::test::Close;
 using tactoid::test::hashed_uniform;
@@ -631,3 +633,5 @@ TEST_CASE("a user's own gap law") {
   static_assert(Contact<decltype(contact), 3>);
   CHECK(consistency<3>(contact, a, b, 9, 1e-6 * um) < 1e-7);
 }
+
+}  // namespace contact_test

@@ -6,6 +6,8 @@
 
 #include "relative.hpp"
 
+namespace core_dual_test {
+
 using namespace tactoid;
 
 TEST_CASE("Sine and cosine of dual numbers: first and second derivatives") {
@@ -20,3 +22,5 @@ TEST_CASE("Sine and cosine of dual numbers: first and second derivatives") {
   CHECK(c.derivative[0].value == test::relative(-std::sin(0.7)));
   CHECK(c.derivative[0].derivative[0] == test::relative(-std::cos(0.7)));
 }
+
+}  // namespace core_dual_test

@@ -12,6 +12,8 @@
 
 #include "relative.hpp"
 
+namespace director_test {
+
 using namespace tactoid;
 
 namespace {
@@ -248,3 +250,5 @@ TEST_CASE("the director at the particles of a cloud of any dimension") {
   bar.positions = {Point<1>(0.5)};
   CHECK(initial_director(bar, RadialDirector(Vector3::Zero()))[0] == Vector4(1.0, 0.0, 0.0, 0.0));
 }
+
+}  // namespace director_test

@@ -16,6 +16,8 @@
 
 #include "relative.hpp"
 
+namespace essential_test {
+
 using namespace tactoid;
 
 namespace {
@@ -278,3 +280,5 @@ TEST_CASE("Conjugate gradients that cannot succeed say why") {
   CHECK((held.x - Eigen::Vector2d(0.5, -0.5)).norm() < 1e-12);
   CHECK((K * held.x + N.transpose() * held.multipliers - f).norm() < 1e-12);
 }
+
+}  // namespace essential_test

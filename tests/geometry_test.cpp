@@ -12,6 +12,8 @@
 
 #include "relative.hpp"
 
+namespace geometry_test {
+
 using namespace tactoid;
 
 namespace {
@@ -372,3 +374,5 @@ TEST_CASE("a broken cloud is refused with place and cause") {
   CHECK(contains(message([](auto& c) { c.cells.clear(); }), "no cells"));
   CHECK(contains(message([](auto& c) { c.positions.clear(); }), "no particles"));
 }
+
+}  // namespace geometry_test

@@ -24,6 +24,8 @@
 #include "input_files.hpp"
 #include "relative.hpp"
 
+namespace input_cloud_test {
+
 using namespace tactoid;
 using test::Folder;
 using test::says;
@@ -707,3 +709,5 @@ TEST_CASE("No truncation and no changed byte of a table or a VTU file is more th
   }
   CHECK(refused > 150);
 }
+
+}  // namespace input_cloud_test

@@ -20,6 +20,8 @@
 #include "input_files.hpp"
 #include "relative.hpp"
 
+namespace input_test {
+
 using namespace tactoid;
 using test::Folder;
 using test::says;
@@ -310,3 +312,5 @@ TEST_CASE("No truncation and no changed byte is more than an error") {
     CHECK(refused > 100);
   }
 }
+
+}  // namespace input_test

@@ -15,6 +15,8 @@
 
 #include "relative.hpp"
 
+namespace kernel_test {
+
 using namespace tactoid;
 
 // What a kernel must be, and near misses.
@@ -396,3 +398,5 @@ TEST_CASE("interpolation converges, and any number of threads gives the same bit
   CHECK(one.gradients == two.gradients);
   CHECK(one.indices == two.indices);
 }
+
+}  // namespace kernel_test

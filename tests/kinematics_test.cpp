@@ -12,6 +12,8 @@
 
 #include "relative.hpp"
 
+namespace kinematics_test {
+
 using namespace tactoid;
 
 namespace {
@@ -147,3 +149,5 @@ TEST_CASE("invariants and the effective stress, from principal values") {
   CHECK(effective_stress(uniaxial) == test::relative(7.0).epsilon(1e-15));
   CHECK(effective_stress(shear) == test::relative(2.0 * std::sqrt(3.0)).epsilon(1e-15));
 }
+
+}  // namespace kinematics_test

@@ -10,6 +10,8 @@
 
 #include "relative.hpp"
 
+namespace material_gate_test {
+
 using namespace tactoid;
 
 namespace {
@@ -187,3 +189,5 @@ TEST_CASE("bad options and bad parameters are named before anything is computed"
   CHECK_THROWS_AS((void)material_gate(NeoHookean{}, {.time_step = 0.0}), ParameterError);
   CHECK_THROWS_AS((void)material_gate(NeoHookean{.mu = -1.0}), ParameterError);
 }
+
+}  // namespace material_gate_test

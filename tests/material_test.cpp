@@ -13,6 +13,8 @@
 
 #include "relative.hpp"
 
+namespace material_test {
+
 using namespace tactoid;
 
 namespace {
@@ -603,3 +605,5 @@ TEST_CASE("parameters out of range are named") {
   NeoHookean{}.validate();
   NematicGel{}.validate();
 }
+
+}  // namespace material_test

@@ -9,6 +9,7 @@
 #include <tactoid/geometry/all.hpp>
 #include <tactoid/neighbors/all.hpp>
 
+namespace neighbors_test {
 
 using namespace tactoid;
 
@@ -177,3 +178,5 @@ TEST_CASE("the neighbour table takes the support of each particle") {
   CHECK_THROWS_AS((void)neighbor_table(slab, slab.positions, std::vector<double>(3, 1.0)), ParameterError);
   CHECK(neighbor_table(slab, std::vector<Point<2>>{}, std::vector<double>(slab.size(), 2.5)).rows() == 0);
 }
+
+}  // namespace neighbors_test

@@ -17,6 +17,8 @@
 
 #include "surface_bodies.hpp"
 
+namespace observe_test {
+
 using namespace tactoid;
 using test::Close;
 
@@ -524,3 +526,5 @@ TEST_CASE(
   CHECK(largest > 0.01 * weight * 5e-7);
   CHECK(reactions<0>(simulation).conditions[0][0] != 0.0);
 }
+
+}  // namespace observe_test

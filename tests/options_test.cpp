@@ -13,6 +13,8 @@
 #include <common/options.hpp>
 #include <common/program.hpp>
 
+namespace options_test {
+
 using namespace tactoid;
 namespace fs = std::filesystem;
 
@@ -229,3 +231,5 @@ TEST_CASE("a program ends with the status of its failure") {
   CHECK(run_program("p", []() -> int { throw ComputationError("computation"); }) == 3);
   CHECK(run_program("p", []() -> int { throw std::bad_alloc(); }) == 3);
 }
+
+}  // namespace options_test

@@ -10,6 +10,8 @@
 
 #include <tactoid/output/checkpoint.hpp>
 
+namespace output_checkpoint_test {
+
 using namespace tactoid;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("A checkpoint that cannot be written leaves the former one") {
   CHECK(bytes_of(path) == before);
   CHECK_THROWS_AS(write_checkpoint(folder.path / "nowhere" / "run.h5", other), FileError);
 }
+
+}  // namespace output_checkpoint_test

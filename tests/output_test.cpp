@@ -14,6 +14,8 @@
 
 #include <tactoid/output/all.hpp>
 
+namespace output_test {
+
 using namespace tactoid;
 namespace fs = std::filesystem;
 
@@ -323,3 +325,5 @@ TEST_CASE("the progress line is for terminals") {
   CHECK(progress.line(1e-6, 0, 0.0) == "  0.0 %  1 us of 5 us  0.0 steps/s");
   CHECK(progress.line(2e-6, 5, 3600.0) == " 25.0 %  2 us of 5 us  0.0 steps/s  3:00:00 to go");
 }
+
+}  // namespace output_test

@@ -12,6 +12,8 @@
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/verify/patch_test.hpp>
 
+namespace patch_of_bodies {
+
 using namespace tactoid;
 
 namespace {
@@ -140,3 +142,5 @@ TEST_CASE("The patch test rejects what it cannot do") {
   auto body = body_of<NodalCentroids>(bar({.length = 1e-6, .cells = 12, .periodic = true}));
   CHECK_THROWS_WITH_AS((void)patch_test(body, small_gradient()), doctest::Contains("periodic"), ParameterError);
 }
+
+}  // namespace patch_of_bodies

@@ -10,6 +10,8 @@
 
 #include "relative.hpp"
 
+namespace quadrature_test {
+
 using namespace tactoid;
 
 namespace {
@@ -285,3 +287,5 @@ TEST_CASE("Parameters out of range are rejected by name") {
   CHECK_THROWS_AS(NodalCentroids{.condition_limit = 0.0}.validate(), ParameterError);
   CHECK_THROWS_AS(GaussCells<2>{.condition_limit = -1.0}.validate(), ParameterError);
 }
+
+}  // namespace quadrature_test

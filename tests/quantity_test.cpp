@@ -8,6 +8,8 @@
 
 #include "relative.hpp"
 
+namespace quantity_test {
+
 using namespace tactoid;
 
 namespace {
@@ -90,3 +92,5 @@ TEST_CASE("quoted text shows what cannot be printed") {
   CHECK_FALSE(is_utf8("\xF5\x80\x80\x80"));
   CHECK_FALSE(is_utf8("\xE2\x82"));
 }
+
+}  // namespace quantity_test

@@ -22,6 +22,8 @@
 #include "relative.hpp"
 #include "surface_bodies.hpp"
 
+namespace simulation_axisymmetry_test {
+
 using namespace tactoid;
 using test::Close;
 
@@ -417,3 +419,5 @@ TEST_CASE("A free ball of revolution breathes in tune, keeps its energy and stay
   CHECK(whole.angular_momentum.norm() == 0.0);
   CHECK(std::abs(whole.center_of_mass[1]) < 1e-9 * radius);
 }
+
+}  // namespace simulation_axisymmetry_test

@@ -17,6 +17,8 @@
 
 #include "relative.hpp"
 
+namespace simulation_director_test {
+
 using namespace tactoid;
 
 namespace {
@@ -153,3 +155,5 @@ TEST_CASE("Where the penalty of the director limits the step, the limit goes wit
   CHECK(step(1.0) == test::relative(1e-15).epsilon(1e-3));  // ε_d²/D; the diffusion adds little
   CHECK(step(1.0) / step(1.25) == doctest::Approx(1.25).epsilon(1e-3));
 }
+
+}  // namespace simulation_director_test

@@ -11,6 +11,8 @@
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/body.hpp>
 
+namespace simulation_reference_test {
+
 using namespace tactoid;
 
 namespace {
@@ -135,3 +137,5 @@ TEST_CASE("The same in a periodic block, with and without damping and stabilisat
 TEST_CASE("The same in the plane, with a law that remembers") {
   compare(Body{"sheet", rectangle({.size = {1e-6, 1.1e-6}, .cells = {13, 11}}), Rkpm<2>{}, NodalCentroids{}, Materials{Region{"body", YangVisco<>{}}}});
 }
+
+}  // namespace simulation_reference_test

@@ -17,6 +17,8 @@
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/all.hpp>
 
+namespace simulation_state_test {
+
 using namespace tactoid;
 
 namespace {
@@ -144,3 +146,5 @@ TEST_CASE("The state of another simulation is refused, by the name of what does 
   broken.at("time").values.push_back(1.0);
   CHECK_THROWS_WITH_AS(restore_state(simulation, broken), doctest::Contains("\"time\" is not of the expected size"), ParameterError);
 }
+
+}  // namespace simulation_state_test

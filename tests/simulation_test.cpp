@@ -15,6 +15,8 @@
 
 #include "relative.hpp"
 
+namespace simulation_test {
+
 using namespace tactoid;
 
 namespace {
@@ -368,3 +370,5 @@ TEST_CASE("motion() counts mass, momentum and centre of mass") {
   CHECK(m.momentum[0] == test::relative(0.5 * m.mass).epsilon(1e-12));
   CHECK(m.center_of_mass[0] == test::relative(0.5e-6 + 0.5e-8).epsilon(1e-12));
 }
+
+}  // namespace simulation_test

@@ -18,6 +18,8 @@
 
 #include "relative.hpp"
 
+namespace suspended_cell_test {
+
 using namespace tactoid;
 
 namespace {
@@ -166,3 +168,5 @@ TEST_CASE("It rests with any viscosity, at the largest step that the library cal
     CHECK(r.error < 0.05);
   }
 }
+
+}  // namespace suspended_cell_test

@@ -17,6 +17,8 @@
 
 #include "relative.hpp"
 
+namespace verify_convergence_test {
+
 using namespace tactoid;
 
 TEST_CASE("Rates of convergence: a power law exactly, a bent line by its slopes") {
@@ -109,3 +111,5 @@ TEST_CASE("An energy watch that is saved with its run and restored knows what th
   CHECK(anew.largest_defect < watch.largest_defect);
   CHECK(anew.time >= 0.5 * end);
 }
+
+}  // namespace verify_convergence_test

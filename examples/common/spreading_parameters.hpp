@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <string>
 
@@ -10,6 +11,9 @@
 #include <common/options.hpp>
 
 namespace tactoid {
+
+/// The substrate of the paper, of a stiffness that depends on the place.
+using GradedSubstrate = Graded<std::function<YangVisco<>(const Vector3&)>>;
 
 /// Parameters of a cell that spreads on a substrate. The defaults are those of Zeng and Li, Soft Matter 2012, 8, 5765;
 /// those that the paper does not give are marked, with their reason.
@@ -208,8 +212,8 @@ struct SpreadingParameters {
     return {.elastic = base.scaled(factor), .a1 = viscous * a1, .a2 = viscous * a2, .a3 = a3};
   }
   /// The substrate whose factor grows with the angle, from `soft` on the side +x to `stiff` on the side −x (Fig. 11).
-  [[nodiscard]] auto graded_substrate(double soft, double stiff) const {
-    return Graded{[*this, soft, stiff](const Vector3& X) {
+  [[nodiscard]] GradedSubstrate graded_substrate(double soft, double stiff) const {
+    return {[*this, soft, stiff](const Vector3& X) {
       const double angle = std::abs(std::atan2(X[1], X[0]));  // θ, 0 … π
       return substrate_law(soft + (stiff - soft) * angle / std::numbers::pi);
     }};

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -38,58 +39,66 @@ struct SpreadingRun {
   /// Composes a case, such as SpreadingCase, and runs it to its end_time. Writes the effective `options`, history, frames
   /// and summary in `out`; after a breakdown, which is thrown again, too.
   template <class Case>
-  void operator()(const Case& spreading, const Options& options) const {
-    const SpreadingParameters& p = spreading.p;
-    set_thread_count(threads);
-    const auto start = std::chrono::steady_clock::now();
-    auto simulation = spreading.simulation();
-
-    const std::optional<double> resumed_at = restart.resume(simulation);
-    Restart::require_end_after(resumed_at, p.end_time);
-    prepare_folder(out);
-    SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range, resumed_at, spreading.added.columns());
-    if (resumed_at) recorder.measure(simulation);
-    restart.restore("recorder", recorder);
-    restart.announce(simulation);
-    options.write_toml(std::filesystem::path(out) / "parameters.toml");
-    const std::size_t first_step = simulation.steps();
-    RunKeeper keeper(restart, options, out, [&](StateWriter& writer) {
-      writer.part("simulation", simulation);
-      writer.part("recorder", recorder);
-    });
-    Progress progress(p.end_time, simulation.time());
-    fmt::print("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {} threads\n",
-               simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
-               1e9 * simulation.largest_stable_time_step(), thread_count());
-    const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    const double setup = seconds();
-    const auto record = [&](auto& s) { recorder.record(s, spreading.added.values(s)); };
-    const auto watch_energy = [&](auto& s) {
-      const double error = s.ledger().error();
-      if (s.steps() < 100 || error <= energy_limit) return;  // at first there is little work to compare with
-      record(s);
-      recorder.write_frame(s);
-      throw ComputationError(fmt::format(
-          "The energy balance is off by {:.3g} % at t = {:.6g} s, and --max-energy-error allows {:.3g} %; likely causes are "
-          "too weak a stabilisation or too large a time step.",
-          100.0 * error, s.time(), 100.0 * energy_limit));
-    };
-    const auto finish = [&](bool completed) {
-      progress.finish();
-      recorder.write_summary(simulation, simulation.steps() - first_step, seconds() - setup, completed);
-    };
-    keeper.run([&] {
-      simulation.run(p.end_time, every(p.end_time / samples, record),
-                     every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
-                     every_steps(10, [&](auto& s) {
-                       progress.update(s.time(), s.steps() - first_step);
-                       watch_energy(s);
-                     }),
-                     every_steps(1, [&](auto&) { keeper.check(); }));  // the last one: the others have seen the step
-    }, finish);
-    fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps() - first_step,
-               seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);
-  }
+  void operator()(const Case& spreading, const Options& options) const;
 };
+
+template <class Case>
+void SpreadingRun::operator()(const Case& spreading, const Options& options) const {
+  const SpreadingParameters& p = spreading.p;
+  set_thread_count(threads);
+  const auto start = std::chrono::steady_clock::now();
+  auto simulation = spreading.simulation();
+
+  const std::optional<double> resumed_at = restart.resume(simulation);
+  Restart::require_end_after(resumed_at, p.end_time);
+  prepare_folder(out);
+  SpreadingRecorder<std::decay_t<decltype(simulation)>::dimension> recorder(out, p.bond_range, resumed_at, spreading.added.columns());
+  if (resumed_at) recorder.measure(simulation);
+  restart.restore("recorder", recorder);
+  restart.announce(simulation);
+  options.write_toml(std::filesystem::path(out) / "parameters.toml");
+  const std::size_t first_step = simulation.steps();
+  RunKeeper keeper(restart, options, out, [&](StateWriter& writer) {
+    writer.part("simulation", simulation);
+    writer.part("recorder", recorder);
+  });
+  Progress progress(p.end_time, simulation.time());
+  fmt::print("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {} threads\n",
+             simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
+             1e9 * simulation.largest_stable_time_step(), thread_count());
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const double setup = seconds();
+  const auto record = [&](auto& s) { recorder.record(s, spreading.added.values(s)); };
+  const auto watch_energy = [&](auto& s) {
+    const double error = s.ledger().error();
+    if (s.steps() < 100 || error <= energy_limit) return;  // at first there is little work to compare with
+    record(s);
+    recorder.write_frame(s);
+    throw ComputationError(fmt::format(
+        "The energy balance is off by {:.3g} % at t = {:.6g} s, and --max-energy-error allows {:.3g} %; likely causes are "
+        "too weak a stabilisation or too large a time step.",
+        100.0 * error, s.time(), 100.0 * energy_limit));
+  };
+  const auto finish = [&](bool completed) {
+    progress.finish();
+    recorder.write_summary(simulation, simulation.steps() - first_step, seconds() - setup, completed);
+  };
+  keeper.run([&] {
+    simulation.run(p.end_time, every(p.end_time / samples, record),
+                   every(p.end_time / frames, [&](auto& s) { recorder.write_frame(s); }),
+                   every_steps(10, [&](auto& s) {
+                     progress.update(s.time(), s.steps() - first_step);
+                     watch_energy(s);
+                   }),
+                   every_steps(1, [&](auto&) { keeper.check(); }));  // the last one: the others have seen the step
+  }, finish);
+  fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps() - first_step,
+             seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);
+}
+
+// The runs of these are compiled once, in spreading_run.cpp; those of other cases where they are used.
+extern template void SpreadingRun::operator()(const SpreadingCase<YangVisco<>>&, const Options&) const;
+extern template void SpreadingRun::operator()(const SpreadingCase<GradedSubstrate>&, const Options&) const;
+extern template void SpreadingRun::operator()(const SpreadingCase<YangVisco<>, 2>&, const Options&) const;
 
 }  // namespace tactoid

@@ -5,10 +5,12 @@
 //   own_mesh --mesh cell.vtu --region-array part ...      own_mesh --mesh points.csv --alpha 1.4 ...
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <tactoid/input/vtu_zlib.hpp>
 #include <tactoid/tactoid.hpp>
@@ -68,6 +70,7 @@ int main(int argc, char** argv) {
     options.add("frames", &frames, Range::between(1, 100000), "Frames for ParaView");
     if (!options.parse(argc, argv)) return 0;
     set_thread_count(threads);
+    const auto start = std::chrono::steady_clock::now();
 
     PointCloud<3> cloud = read(input);
     fmt::print("{}: {} particles, {} cells, {} facets, volume {:.4g} m^3\n", input.mesh, cloud.size(), cloud.cells.size(), cloud.facets.size(),
@@ -88,7 +91,13 @@ int main(int argc, char** argv) {
     Restart::require_end_after(resumed_at, end_time);
     const std::filesystem::path folder = out;
     prepare_folder(folder);
-    HistoryWriter history(folder / "history.csv", {"time", "height", "force", "kinetic_energy", "strain_energy", "energy_error"}, resumed_at);
+    const std::vector<std::string> columns{"time", "height", "force", "kinetic_energy", "strain_energy", "energy_error"};
+    const auto values = [&](auto& s) {
+      const EnergyLedger& e = s.ledger();
+      return std::array{s.time(), motion(s.template particles<0>()).center_of_mass[2] - bottom, -s.template boundary<0>().force().z(),
+                        e.kinetic, e.strain + e.stabilization, e.error()};
+    };
+    HistoryWriter history(folder / "history.csv", columns, resumed_at);
     FrameSeries series(folder, {"cell"}, resumed_at);
     restart.restore("series", series);
     restart.announce(simulation);
@@ -97,18 +106,24 @@ int main(int argc, char** argv) {
       writer.part("simulation", simulation);
       writer.part("series", series);
     });
+    // The last values, what the run took (a continued one: since then), and whether it came to its end.
+    const auto finish = [&](bool completed) {
+      Summary summary;
+      const auto last = values(simulation);
+      for (std::size_t i = 0; i < columns.size(); ++i) summary.set(columns[i], last[i]);
+      summary.set("particles", simulation.body<0>().size()).set("steps", simulation.steps());
+      summary.set("wall_seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      summary.set("threads", thread_count()).set("version", version).set("completed", completed);
+      summary.write(folder / "summary.json");
+    };
     keeper.run([&] {
-      simulation.run(end_time, every(end_time / 200, [&](auto& s) {
-                       const EnergyLedger& e = s.ledger();
-                       history.write(std::array{s.time(), motion(s.template particles<0>()).center_of_mass[2] - bottom,
-                                                -s.template boundary<0>().force().z(), e.kinetic, e.strain + e.stabilization, e.error()});
-                     }),
+      simulation.run(end_time, every(end_time / 200, [&](auto& s) { history.write(values(s)); }),
                      every(end_time / frames, [&](auto& s) {
                        series.next();
                        series.add(0, s.template body<0>(), s.template particles<0>(), s.time());
                      }),
                      every_steps(1, [&](auto&) { keeper.check(); }));
-    }, [](bool) {});
+    }, finish);
     fmt::print("{} steps, energy error {:.2g} %; results in {}\n", simulation.steps(), 100.0 * simulation.ledger().error(), out);
     return 0;
   });

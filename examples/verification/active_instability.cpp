@@ -21,6 +21,7 @@
 #include "gel_strip.hpp"
 
 namespace tactoid::verification {
+namespace active_instability_study {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -125,8 +126,10 @@ void study_rate(Report& report, Level level, const std::string& name, double c) 
 }
 
 }  // namespace
+}  // namespace active_instability_study
 
 void active_instability(Report& report, Level level) {
+  using namespace active_instability_study;
   study_rate<Corotational>(report, level, "corotational", 0.5);
   study_rate<Convected>(report, level, "convected", 1.0);
 }

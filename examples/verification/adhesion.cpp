@@ -20,7 +20,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
-
+namespace adhesion_study {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -265,8 +265,10 @@ void compression(Report& report, Level level) {
 }
 
 }  // namespace
+}  // namespace adhesion_study
 
 void adhesion(Report& report, Level level) {
+  using namespace adhesion_study;
   derjaguin(report, level);
   tabor(report, level);
   hertz(report, level);

@@ -13,7 +13,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
-
+namespace balances_study {
 namespace {
 
 constexpr double radius = 2e-6;
@@ -99,8 +99,10 @@ void driven_block(Report& report, long steps) {
 }
 
 }  // namespace
+}  // namespace balances_study
 
 void balances(Report& report, Level level) {
+  using namespace balances_study;
   const long steps = level == Level::full ? 100000 : 10000;
   free_ball(report, steps);
   driven_block(report, steps);

@@ -13,7 +13,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
-
+namespace bouncing_study {
 namespace {
 
 constexpr double radius = 2e-6;
@@ -106,8 +106,10 @@ void two_balls(Report& report, Level level) {
 }
 
 }  // namespace
+}  // namespace bouncing_study
 
 void bouncing(Report& report, Level level) {
+  using namespace bouncing_study;
   single_ball(report, level);
   two_balls(report, level);
 }

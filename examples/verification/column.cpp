@@ -14,7 +14,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
-
+namespace column_study {
 namespace {
 
 constexpr double duration = 0.5, interval = 2.5e-3;  // s
@@ -114,8 +114,10 @@ double difference(const std::vector<double>& a, const std::vector<double>& b, do
 }
 
 }  // namespace
+}  // namespace column_study
 
 void column(Report& report, Level level) {
+  using namespace column_study;
   const std::vector<int> resolutions = level == Level::full ? std::vector{3, 6, 12} : std::vector{3, 5, 9};
   std::vector<Twist> runs;
   const double none = std::numeric_limits<double>::quiet_NaN();

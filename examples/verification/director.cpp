@@ -14,6 +14,7 @@
 #include "gel_strip.hpp"
 
 namespace tactoid::verification {
+namespace director_study {
 namespace {
 
 constexpr double pi = std::numbers::pi, sqrt2 = std::numbers::sqrt2;
@@ -350,8 +351,10 @@ void study_transport(Report& report) {
 }
 
 }  // namespace
+}  // namespace director_study
 
 void director(Report& report, Level level) {
+  using namespace director_study;
   study_anchored_ends(report);
   study_wall(report, level);
   study_decay(report, level);

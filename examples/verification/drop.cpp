@@ -26,7 +26,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
-
+namespace drop_study {
 namespace {
 
 constexpr double density = 1000.0;
@@ -99,7 +99,7 @@ template <class S>
   Trace t;
   simulation.run(end, every(interval, [&](auto& s) {
                    t.time.push_back(s.time());
-                   t.elongation.push_back(tactoid::verification::elongation(s));
+                   t.elongation.push_back(drop_study::elongation(s));
                  }));
   return t;
 }
@@ -278,8 +278,10 @@ template <class Tension>
 }
 
 }  // namespace
+}  // namespace drop_study
 
 void drop(Report& report, Level level) {
+  using namespace drop_study;
   report.at_most("net force and torque of the variational tension, deformed drop, over the sum of the forces",
                  imbalance<SurfaceTension>(10, 5), 1e-13, "zero: the area does not change with a rigid motion");
   const double coarse = imbalance<CurvatureSurfaceTension>(6, 3), fine = imbalance<CurvatureSurfaceTension>(12, 6);

@@ -17,6 +17,7 @@
 #include "gel_strip.hpp"
 
 namespace tactoid::verification {
+namespace energy_law_study {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -350,8 +351,10 @@ void study_motion(Report& report, Level level) {
 }
 
 }  // namespace
+}  // namespace energy_law_study
 
 void energy_law(Report& report, Level level) {
+  using namespace energy_law_study;
   study_terms(report, level);
   study_motion(report, level);
 }

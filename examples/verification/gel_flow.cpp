@@ -13,6 +13,7 @@
 #include "gel_strip.hpp"
 
 namespace tactoid::verification {
+namespace gel_flow_study {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -250,8 +251,10 @@ void study_director_stress(Report& report) {
 }
 
 }  // namespace
+}  // namespace gel_flow_study
 
 void gel_flow(Report& report, Level level) {
+  using namespace gel_flow_study;
   study_start(report, level, Flow::couette);
   study_start(report, level, Flow::poiseuille);
   study_cycle(report);

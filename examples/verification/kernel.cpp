@@ -12,6 +12,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
+namespace kernel_study {
 namespace {
 
 constexpr double wave = 2.5;
@@ -99,8 +100,10 @@ void converge(Report& report, const char* name, const std::vector<int>& cells) {
 }
 
 }  // namespace
+}  // namespace kernel_study
 
 void kernel(Report& report, Level level) {
+  using namespace kernel_study;
   const bool full = level == Level::full;
   const std::vector<int> line = full ? std::vector{20, 40, 80, 160, 320} : std::vector{20, 40, 80, 160};
   const std::vector<int> plane = full ? std::vector{16, 32, 64, 128} : std::vector{12, 24, 48};

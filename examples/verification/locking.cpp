@@ -14,6 +14,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
+namespace locking_study {
 namespace {
 
 constexpr double length = 10.0, width = 1.0;  // m; the equations have no length scale
@@ -116,8 +117,10 @@ Bent bend(const Quadrature& quadrature, int across, double force) {
 }
 
 }  // namespace
+}  // namespace locking_study
 
 void locking(Report& report, Level level) {
+  using namespace locking_study;
   // The elastica gives w/L = ½ for F L²/(E I) = 2.04, E = 9 K G/(3 K + G) (Bisshopp and Drucker, Q. Appl. Math. 1945,
   // 3, 272). The tip of the three-dimensional bar: an independent finite-element solution of the same equations
   // (27-node hexahedra, volumetric term at 2³ points, symmetric half) gives 4.9660, 4.9681 and 4.9739 m on 20 × 2 × 2,

@@ -20,7 +20,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
-
+namespace revolution_study {
 namespace {
 
 constexpr double pi = std::numbers::pi, radius = 5e-6;
@@ -121,8 +121,10 @@ double plate_force(double resolution) {
 }
 
 }  // namespace
+}  // namespace revolution_study
 
 void revolution(Report& report, Level level) {
+  using namespace revolution_study;
   const bool full = level == Level::full;
   {
     auto table = report.table("sphere", {"cells_through", "error"});

@@ -19,6 +19,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
+namespace statics_study {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -150,8 +151,10 @@ void converge(Report& report, const std::string& name, const ManufacturedMotion<
 }
 
 }  // namespace
+}  // namespace statics_study
 
 void statics(Report& report, Level level) {
+  using namespace statics_study;
   const NeoHookean neo_hookean = NeoHookean::from_young(1e4, 0.3);
   const ModifiedMooneyRivlin nucleus{};
   const ManufacturedMotion<Compressible<2>> stretch2;

@@ -4,7 +4,7 @@
 
 namespace tactoid::verification {
 
-// One source file each, named after the study.
+// One source file each, named after the study; its helpers have a namespace of their own.
 void kernel(Report&, Level);
 void statics(Report&, Level);
 void locking(Report&, Level);

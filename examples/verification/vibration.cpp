@@ -16,7 +16,7 @@
 #include "studies.hpp"
 
 namespace tactoid::verification {
-
+namespace vibration_study {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -348,8 +348,10 @@ void balls(Report& report, Level level) {
 }
 
 }  // namespace
+}  // namespace vibration_study
 
 void vibration(Report& report, Level level) {
+  using namespace vibration_study;
   plane_waves(report, level);
   bars(report, level);
   balls(report, level);

@@ -18,6 +18,7 @@
 #include "driven.hpp"
 
 namespace tactoid::verification {
+namespace viscoelastic_study {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -243,8 +244,10 @@ void study_invariant(Report& report, Level level) {
 }
 
 }  // namespace
+}  // namespace viscoelastic_study
 
 void viscoelastic(Report& report, Level level) {
+  using namespace viscoelastic_study;
   study_invariant<ThirdInvariant>(report, level);
   study_invariant<SecondInvariant>(report, level);
 }

@@ -73,3 +73,4 @@ run(${CMAKE_COMMAND} -S "${SOURCE}/tests/consumer" -B "${WORK}/build" ${options}
     "TACTOID_SOURCE=${SOURCE}")
 run(${CMAKE_COMMAND} --build "${WORK}/build")
 run("${WORK}/build/consumer")
+run("${WORK}/build/consumer_precompiled")

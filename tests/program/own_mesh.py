@@ -5,6 +5,7 @@
 
 import base64
 import csv
+import json
 import os
 import pathlib
 import shutil
@@ -95,6 +96,11 @@ class OwnMesh(unittest.TestCase):
         self.assertGreater(max(row["force"] for row in rows), 0.0)
         self.assertLess(rows[-1]["energy_error"], 0.01)
         self.assertEqual(len(os.listdir(self.folder / "out" / "fields")), 3)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+        self.assertEqual({name: summary[name] for name in rows[-1]}, rows[-1])
+        self.assertEqual((summary["particles"], summary["threads"], summary["completed"]), (125, 1, True))
+        self.assertGreater(summary["steps"], 0)
+        self.assertGreater(summary["wall_seconds"], 0.0)
 
     def test_a_run_that_is_ended_and_continued_is_the_whole_run(self):
         fall = ["--mesh", "body.msh", "--scale", "5um", "--speed", "0.05m/s", "--end-time", "12us", "--frames", "6"]
@@ -104,6 +110,11 @@ class OwnMesh(unittest.TestCase):
         continued_run.interrupt(self, PROGRAM, signal.SIGINT, 90, "--restart", "parts/checkpoint.h5", "--threads", "1", "--out", "parts")
         self.run_program(block(8), "--restart", "parts/checkpoint.h5", "--threads", "2", "--out", "parts")
         continued_run.assert_same(self, "whole", "parts", "history.csv")
+        # Its summary is that of the whole run, whatever it took.
+        whole, parts = (json.loads((self.folder / out / "summary.json").read_text()) for out in ("whole", "parts"))
+        for name in ("wall_seconds", "threads"):
+            del whole[name], parts[name]
+        self.assertEqual(whole, parts)
         # From the first place again, over the lines and frames that are there by now.
         self.run_program(block(8), "--restart", "early.h5", "--threads", "1", "--out", "parts")
         continued_run.assert_same(self, "whole", "parts", "history.csv")

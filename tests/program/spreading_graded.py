@@ -6,6 +6,7 @@
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -15,6 +16,8 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples" / "common"))
 from vtu_reader import Grid, read_history
+
+import continued_run
 
 PROGRAMS = []
 NEAR = ["--gap=1nm", "--resolution=0.4", "--end-time=0.2us", "--frames=1", "--samples=4", "--threads=1", "--preset=elastic"]
@@ -30,6 +33,11 @@ class Graded(unittest.TestCase):
                                 timeout=300, env=dict(os.environ, OMP_WAIT_POLICY="passive"))
         self.assertEqual(result.returncode, status, result.stderr)
         return result
+
+    def run_here(self, *arguments):
+        result = subprocess.run([PROGRAMS[0], *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                                env=continued_run.ENVIRONMENT)
+        self.assertEqual(result.returncode, 0, result.stderr)
 
     def history(self, out):
         return read_history(self.folder / out / "history.csv")
@@ -50,6 +58,16 @@ class Graded(unittest.TestCase):
         x = substrate.points[:, 0]
         soft, stiff = moved[x > 1e-6].mean(), moved[x < -1e-6].mean()
         self.assertGreater(soft, 2.0 * stiff)  # the factor is 53 on the mean there, and 149 here
+
+    def test_a_run_that_is_ended_and_continued_is_the_whole_run(self):
+        near = ["--soft=2", "--stiff=50", "--gap=1nm", "--resolution=0.4", "--end-time=0.5us", "--frames=5", "--samples=50", "--preset=elastic"]
+        self.run_here(*near, "--threads=1", "--out", "whole")
+        continued_run.interrupt(self, PROGRAMS[0], signal.SIGTERM, 10, *near, "--threads=1", "--out", "parts")
+        shutil.copy(self.folder / "parts" / "checkpoint.h5", self.folder / "early.h5")
+        continued_run.interrupt(self, PROGRAMS[0], signal.SIGINT, 30, "--restart", "parts/checkpoint.h5", "--threads=1", "--out", "parts")
+        for start in ("parts/checkpoint.h5", "early.h5"):  # at last from the first place, over what is there by now
+            self.run_here("--restart", start, "--threads=2", "--out", "parts")
+            continued_run.assert_same(self, "whole", "parts", "history.csv", "front.csv")
 
     def test_bad_input(self):
         result = self.run_program(PROGRAMS[0], "refused", "--soft=0", status=2)

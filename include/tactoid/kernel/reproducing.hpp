@@ -41,7 +41,8 @@ class Reproducing {
     const auto pivots = factor_.vectorD();
     if (!(pivots.minCoeff() > size * std::numeric_limits<double>::epsilon() * pivots.maxCoeff())) return;
     // In the norm of largest column sums: within a factor `size` of the ratio of the eigenvalues, at a fraction of the cost.
-    const Matrix inverse = factor_.solve(Matrix::Identity());
+    Matrix inverse;
+    for (int k = 0; k < size; ++k) inverse.col(k) = substitute(Vector::Unit(k));
     condition_ = moment_.cwiseAbs().colwise().sum().maxCoeff() * inverse.cwiseAbs().colwise().sum().maxCoeff();
   }
 
@@ -107,10 +108,12 @@ class Reproducing {
 
   // One step of iterative refinement: the reproducing conditions then hold to round-off.
   [[nodiscard]] Vector solve(const Vector& right) const {
-    Vector x = factor_.solve(right);
-    x += factor_.solve(right - moment_ * x);
+    Vector x = substitute(right);
+    x += substitute(right - moment_ * x);
     return x;
   }
+  // For vectors alone: each other type of right side is another solver to compile.
+  [[nodiscard]] Vector substitute(const Vector& right) const { return factor_.solve(right); }
 
   std::span<const KernelNeighbor<D>> neighbors_;
   double scale_ = 0.0;

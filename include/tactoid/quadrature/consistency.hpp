@@ -4,8 +4,6 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include <tactoid/core/errors.hpp>
 #include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/quadrature/point_table.hpp>
@@ -35,17 +33,29 @@ class AffineResidual {
       double length = 0.0;
       for (std::size_t e = begin; e < end; ++e)
         if (weights[e] > 0.0) length = std::max(length, offset(q, e).norm());
-      Eigen::Matrix4d moment = Eigen::Matrix4d::Identity();
-      moment.topLeftCorner(n, n).setZero();
+      // L Lᵀ = Σ w p pᵀ, in plain loops: Eigen's factorisations cost every program seconds to compile. The factor of a direction
+      // in which the row has no extent is left out.
+      double L[4][4] = {};
+      Vector4 inverse = Vector4::Zero();  // of L's diagonal
       for (std::size_t e = begin; e < end; ++e) {
         const Vector4 p = monomials(q, e, length);
-        moment.topLeftCorner(n, n) += weights[e] * p.head(n) * p.head(n).transpose();
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j <= i; ++j) L[i][j] += weights[e] * p[i] * p[j];
       }
-      const Eigen::LLT<Eigen::Matrix4d> cholesky(moment);
+      for (int j = 0; j < n; ++j) {
+        for (int i = j; i < n; ++i)
+          for (int k = 0; k < j; ++k) L[i][j] -= L[i][k] * L[j][k];
+        inverse[j] = L[j][j] > 0.0 ? 1.0 / std::sqrt(L[j][j]) : 0.0;
+        for (int i = j; i < n; ++i) L[i][j] *= inverse[j];
+      }
       for (std::size_t e = begin; e < end; ++e) {
+        const Vector4 of = monomials(q, e, length);
         Vector4 p = Vector4::Zero();
-        p.head(n) = monomials(q, e, length).head(n);
-        cholesky.matrixL().solveInPlace(p);
+        for (int i = 0; i < n; ++i) {
+          p[i] = of[i];
+          for (int k = 0; k < i; ++k) p[i] -= L[i][k] * p[k];
+          p[i] *= inverse[i];
+        }
         constant_[q] = p[0];
         pair_[e] = {p[1], p[2], p[3], weights[e]};
         particle_[e] = table.entries[e].particle;
