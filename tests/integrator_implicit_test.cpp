@@ -163,19 +163,20 @@ TEST_CASE("Steps far above the stable one of explicit schemes decay") {
     largest = std::max(largest, std::abs(o.z[0]));
   }
   CHECK(largest < 1e-6);
-  // And of any length: energy never grows.
+  // And of any length: energy stays below what it was at the start.
   for (const double step : {0.1, 1.0, 3.0, 100.0}) {
     Oscillators p = one(1.0, 0.0, 1.0, 0.3);
     ImplicitDynamics any{.time_step = step};
     any.initialize(p);
-    double energy = 0.5 * 0.09;
+    const double start = 0.5 * 0.09;
+    double energy = start;
     for (int k = 1; k <= 50; ++k) {
       any.step(p, step * k);
       const double now = 0.5 * (p.z[0] * p.z[0] + p.rate[0] * p.rate[0]);
-      CHECK(now < 1.3 * energy);  // BDF2 is stable in a norm of two instants
-      energy = std::max(now, 1e-20);
+      CHECK(now < 1.0001 * start);  // (BDF2 is stable in a norm of two instants, not from each to the next)
+      energy = now;
     }
-    CHECK(energy < 0.5 * 0.09);
+    CHECK(energy < 0.95 * start);
   }
 }
 

@@ -44,8 +44,8 @@ int main(int argc, char** argv) {
     integrator.time_step = p.time_step;
     if (longest > 0.0) integrator.max_time_step = longest;
     // A run whose points are about to be inverted would take ever shorter steps.
-    integrator.min_time_step = p.min_time_step > 0.0 ? p.min_time_step : 1e-8 * p.end_time;
-    integrator.first_time_step = std::max(integrator.min_time_step, 1e-5 * p.end_time);
+    integrator.min_time_step = p.min_time_step > 0.0 ? p.min_time_step : std::min(1e-12, 1e-6 * p.end_time);
+    integrator.first_time_step = std::min(1e-8, 1e-3 * p.end_time);  // the defect of a radial director relaxes first
     integrator.newton_tolerance = 1e-2 * integrator.tolerance;
     // E = 3 × the shear modulus 2 (C₁ + C₂): λ is large.
     const double factor = elasticity / (6.0 * (p.substrate_c1 + p.substrate_c2));

@@ -11,7 +11,7 @@ namespace tactoid {
 
 /// A force on one body: gravity, surface tension, pressure, a rigid plate.
 ///
-/// `initialize` is called once, when the simulation is composed. `apply` is called once in every step: it adds
+/// `initialize` is called once, when the simulation is composed. `apply` is called once in every step (more often in implicit ones): it adds
 /// forces at the particles and returns its energy; same bits for any number of threads.
 /// `stiffness_rate(body)` bounds ω² = k/m (1/s²) of the term, for the stable step; 0 if it limits nothing.
 template <class B, int D>

@@ -125,15 +125,16 @@ class EssentialConditions {
   }
 
   /// Takes the forces that hold the prescribed values (N per particle) as those of the conditions at `time`, the end of a
-  /// step. Returns their work over the step, by the mean of the forces at its ends, J. For unknowns that are values.
-  double accept(double time, double time_step, const Field& holding) {
+  /// step. Returns their work over the step, by the mean of the forces at its ends, J; with `from_rest`, where none is known at the
+  /// start, by that at the end. For unknowns that are values.
+  double accept(double time, double time_step, const Field& holding, bool from_rest) {
     double work = 0.0;
     std::fill(reactions_.begin(), reactions_.end(), Vector3::Zero());
     std::fill(forces_.begin(), forces_.end(), Vector4::Zero());
     for_each_value([&](int c, std::size_t k, const Condition& condition) {
       auto& last = directions_[static_cast<std::size_t>(c)].last[k];
       const double value = prescribed(condition, time)[c], force = holding[condition.particle][c];
-      work += 0.5 * (last.force + force) * (value - last.value);
+      work += 0.5 * ((from_rest ? force : last.force) + force) * (value - last.value);
       last = {value, time_step > 0.0 ? (value - last.value) / time_step : last.rate, 0.0, force};
       reactions_[condition.motion][c] += force;
       forces_[condition.particle][c] = force;

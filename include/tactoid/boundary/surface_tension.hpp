@@ -73,7 +73,7 @@ double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4>
 }
 
 /// Calls emit(i, j, K) with the second derivative of `tension` × area in the nodes of every facet. With c = ∂x/∂s × ∂x/∂t,
-/// m = c/|c| and dc = [dx]: d²|c| = dc·(1 − m mᵀ) dc/|c| + m·d²c.
+/// m = c/|c| and dc linear in dx: d²|c| = dc·(1 − m mᵀ) dc/|c| + m·d²c. In a meridian section ∂x/∂t is 2πr along e_z.
 template <int D, class Emit>
 void add_area_stiffness(const SurfaceIntegral<D>& s, const ParticleFields& body, double tension, const Emit& emit) {
   const auto cross = [](const Vector3& v) {  // [v]ₓ w = v × w
@@ -91,10 +91,18 @@ void add_area_stiffness(const SurfaceIntegral<D>& s, const ParticleFields& body,
       const Tensor3 across = (Tensor3::Identity() - m * m.transpose()) / c.norm(), turn = cross(m);
       const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
       std::array<Tensor3, corners> dc;
-      for (std::size_t k = 0; k < corners; ++k) dc[k] = nt[k] * cross(a.s) - ns[k] * cross(a.t);
+      const auto ring = s.surface.circumference_slopes(point.local);
+      const Vector3 out = Vector3::UnitZ().cross(m);
+      for (std::size_t k = 0; k < corners; ++k) {
+        dc[k] = nt[k] * cross(a.s) - ns[k] * cross(a.t);
+        dc[k].col(0) += ring[k] * a.s.cross(Vector3::UnitZ());
+      }
       for (std::size_t k = 0; k < corners; ++k)
-        for (std::size_t l = 0; l < corners; ++l)
+        for (std::size_t l = 0; l < corners; ++l) {
           K[k][l] += tension * point.weight * (dc[k].transpose() * across * dc[l] - (ns[k] * nt[l] - nt[k] * ns[l]) * turn);
+          K[k][l].col(0) += tension * point.weight * ns[k] * ring[l] * out;
+          K[k][l].row(0) += tension * point.weight * ns[l] * ring[k] * out.transpose();
+        }
     }
     for (std::size_t k = 0; k < corners; ++k)
       for (std::size_t l = 0; l < corners; ++l) emit(s.surface.facets[f][k], s.surface.facets[f][l], K[k][l]);
@@ -161,7 +169,7 @@ struct SurfaceTension {
     });
   }
 
-  /// The exact second derivative of σ₀ A, where surfaces are no rings (D = 2 around an axis: without the change of the circumference).
+  /// The exact second derivative of σ₀ A.
   template <class Emit>
   void add_stiffness(const ParticleFields& body, const Emit& emit) const {
     integral.visit([&](const auto& s) { detail::add_area_stiffness(s, body, tension, emit); });

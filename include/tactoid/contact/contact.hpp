@@ -12,7 +12,7 @@ namespace tactoid {
 /// An interaction of two bodies A and B.
 ///
 /// `initialize` is called once, when the simulation is composed, with the two reference clouds and fields; it
-/// checks parameters and builds search structures. `apply` is called once in every step: it adds forces to both
+/// checks parameters and builds search structures. `apply` is called once in every step (more often in implicit ones): it adds forces to both
 /// bodies and returns its energy. `apply` must give the same bits for any number of threads; it may keep state: what
 /// only saves work (tracked closest points), and what the contact remembers (bonds), which a `state(archive)` hands to checkpoints.
 /// What is remembered changes only when `time` moves on: implicit steps try several positions at the time of their start.

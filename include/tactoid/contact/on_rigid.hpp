@@ -38,7 +38,8 @@ class RigidPass {
       const auto& local = quadrature_.point(q).local;
       const Vector4 x = surface_.interpolate(f, local, body.position);
       const RigidGap g = rigid.at(x.template head<3>(), time);
-      double stiffness = law.stiffness(g.gap);
+      const double here = law.stiffness(g.gap);
+      double stiffness = here;
       if (ahead > 0.0) {
         const Vector4 v = surface_.interpolate(f, local, body.velocity);
         const double closing = g.normal.dot(g.velocity - v.template head<3>());
@@ -46,7 +47,7 @@ class RigidPass {
       }
       const double area = quadrature_.area[q], pressure = area * law.traction(g.gap);
       states_[q] = {pad(Vector3(pressure * g.normal)), g.normal, area * law.potential(g.gap),
-                    pressure * g.normal.dot(g.velocity), area * stiffness};
+                    pressure * g.normal.dot(g.velocity), area * here, area * stiffness};
     });
     on_surface.setZero();
     TermEnergy total;
@@ -66,7 +67,7 @@ class RigidPass {
     std::vector<double> sum(body.mass.size(), 0.0);
     for (std::size_t q = 0; q < states_.size(); ++q)
       for (std::size_t k = 0; k < quadrature_.point(q).shape.size(); ++k)
-        sum[surface_.facets[quadrature_.facet_of(q)][k]] += states_[q].stiffness * quadrature_.point(q).shape[k];
+        sum[surface_.facets[quadrature_.facet_of(q)][k]] += states_[q].stiffness_ahead * quadrature_.point(q).shape[k];
     double rate = 0.0;
     for (std::size_t i = 0; i < sum.size(); ++i) rate = std::max(rate, sum[i] / body.mass[i]);
     return rate;
@@ -94,7 +95,8 @@ class RigidPass {
   struct State {
     Vector4 force = Vector4::Zero();
     Vector3 normal = Vector3::Zero();
-    double energy = 0.0, power = 0.0, stiffness = 0.0;
+    double energy = 0.0, power = 0.0;
+    double stiffness = 0.0, stiffness_ahead = 0.0;  // at the gap, and the largest on the way of two steps
   };
   FacetSurface<D> surface_;
   FacetQuadrature<D> quadrature_;

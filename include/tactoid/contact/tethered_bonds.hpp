@@ -70,7 +70,7 @@ class TetherSites {
   [[nodiscard]] std::span<const double> capacity() const { return capacity_; }         ///< receptors per site
   [[nodiscard]] std::span<const double> bound() const { return bound_; }               ///< bonds that hold, per site
   [[nodiscard]] std::span<const Vector4> extension() const { return extension_; }      ///< from anchor to site, m; 0 where nothing is bound
-  [[nodiscard]] std::span<const double> stored() const { return stored_; }             ///< energy of the bonds of each site, J
+  [[nodiscard]] std::span<const double> stored() const { return shown_; }              ///< energy of the bonds of each site, J
   /// Where a site was at the last call, m.
   [[nodiscard]] const Vector4& place(std::size_t site) const { return points_[point_of_[site]]; }
 
@@ -89,6 +89,7 @@ class TetherSites {
     archive("last_time", last_time_);
     archive("calls", calls_);
     for (std::size_t s = 0; s < place.size(); ++s) Eigen::Map<Place>(anchor_[s].data()) = place[s];
+    if constexpr (Archive::restoring) shown_ = stored_;
   }
 
  private:
@@ -108,14 +109,15 @@ class TetherSites {
   std::vector<Index> point_of_;        // per site: its quadrature point
   std::vector<double> capacity_;       // receptors
   std::vector<double> bound_;          // bonds that hold
-  std::vector<double> stored_;         // energy of the bonds, J
-  std::vector<double> potential_;      // ½κ(|s| − ℓ)² of a bond of the mean extension s at the last call, J
+  std::vector<double> stored_;         // energy of the bonds when time last moved on, J
+  std::vector<double> potential_;      // ½κ(|s| − ℓ)² of a bond of the mean extension s at that time, J
+  std::vector<double> shown_;          // energy of the bonds at the last call, J
   std::vector<Index> anchor_facet_;    // of B, of the bonds that hold
   std::vector<Local> anchor_;          // place on that facet
   Field extension_, force_;            // per site, from anchor to site, m; on A, N
   std::vector<double> dissipated_, supplied_;  // in the last step, J
   double last_time_ = 0.0;
-  std::uint64_t calls_ = 0;  // numbers the steps for the random numbers
+  std::uint64_t calls_ = 0;  // numbers the calls for the random numbers
 };
 
 /// Bonds that hold where they formed: a Contact in which the receptors of A's surface bind to *material points* of B's, so that
@@ -214,7 +216,7 @@ void TetherSites<D>::initialize(const TetheredBonds& law, const PointCloud<D>& c
   }
   const std::size_t n = size();
   bound_.assign(n, 0.0);
-  stored_ = potential_ = dissipated_ = supplied_ = bound_;
+  stored_ = potential_ = shown_ = dissipated_ = supplied_ = bound_;
   anchor_facet_.assign(n, 0);
   anchor_.assign(n, Local{});
   extension_.assign(n, Vector4::Zero());
@@ -235,14 +237,21 @@ TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields&
     const Vector4 at = points_[point_of_[s]];
     const ClosestPoint<D>& nearest = closest[point_of_[s]];
     double& n = bound_[s];
-    dissipated_[s] = supplied_[s] = 0.0;
+    dissipated_[s] = supplied_[s] = shown_[s] = 0.0;
     if (!(n > 0.0) && !(nearest.gap < law.capture_distance)) return;
     double off = law.kinetics.detachment_rate(0.0);
     if (n > 0.0) {  // the motion of the step has done work on the bonds
       const double r = extension(s, at).norm(), now = law.potential(r);
-      stored_[s] += n * (now - potential_[s]);
+      shown_[s] = stored_[s] + n * (now - potential_[s]);
+      if (!(step > 0.0)) {  // positions are tried: the bonds stay as they are
+        extension_[s] = extension(s, at);
+        force_[s] = r > 0.0 ? Vector4((-n * law.tension(r) / r) * extension_[s]) : Vector4(Vector4::Zero());
+        return;
+      }
+      stored_[s] = shown_[s];
       off = law.kinetics.detachment_rate(law.tension(r));
     }
+    if (!(step > 0.0)) return;
     const double on = nearest.gap < law.capture_distance ? law.kinetics.on_rate : 0.0, free = capacity_[s] - n;
     double left = n * std::exp(-off * step), joined = 0.0;
     if (law.stochastic) {
@@ -256,7 +265,7 @@ TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields&
     if (n > 0.0) dissipated_[s] = stored_[s] * (n - left) / n;
     stored_[s] -= dissipated_[s];
     supplied_[s] = joined * law.potential((at.template head<3>() - nearest.point).norm());
-    stored_[s] += supplied_[s];
+    shown_[s] = stored_[s] += supplied_[s];
     if (joined > 0.0) {
       if (left > 0.0) {
         const Vector4 anchor = at - extension(s, at);
@@ -280,7 +289,7 @@ TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields&
   ++calls_;
   TermEnergy total;
   for (std::size_t s = 0; s < size(); ++s) {
-    total.potential += stored_[s];
+    total.potential += shown_[s];
     if (step > 0.0) {
       total.dissipated_power += dissipated_[s] / step;
       total.external_power += supplied_[s] / step;

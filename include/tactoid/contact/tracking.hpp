@@ -19,7 +19,7 @@ namespace tactoid {
 /// A step re-projects each query point on the facet of the last step and, if the closest point lies on the facet's
 /// rim or a neighbour bends toward the query point, walks over the neighbouring facets down to the minimum of the
 /// distance. A global search (k-d tree of the facets' midpoints) replaces the walk at the start, and again whenever
-/// query points and surface together have moved further than `search_after` mean facet sizes since the last one: where
+/// query points and surface together have moved further than `search_after` mean facet sizes (of the first one) since the last one: where
 /// two parts of the surface that are no neighbours are equally near, the change from one to the other is late by at
 /// most that much. Queries are independent: the same bits for any number of threads. No allocation between global
 /// searches.
@@ -51,7 +51,8 @@ class ClosestPointTracker {
       largest = std::max(largest, extent[f].radius);
       sum += extent[f].radius;
     }
-    facet_size_ = 2.0 * sum / static_cast<double>(count);
+    // That of the first search, for good: an implicit step may try a state in which facets are huge.
+    if (!(facet_size_ > 0.0) && std::isfinite(sum)) facet_size_ = 2.0 * sum / static_cast<double>(count);
     reach_ = reach;
     closest_.assign(queries.size(), {});
     asleep_.assign(queries.size(), 0);

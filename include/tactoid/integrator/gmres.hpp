@@ -49,7 +49,7 @@ template <class Multiply>
           w -= h * basis[static_cast<std::size_t>(i)];
         }
       const double rest = w.norm(), before = R.col(n).head(n + 1).norm();
-      if (!std::isfinite(rest)) return solution;
+      if (!std::isfinite(rest)) break;  // what is known so far has to do
       for (int i = 0; i < n; ++i) {
         const double upper = R(i, n);
         R(i, n) = cosine[i] * upper + sine[i] * R(i + 1, n);

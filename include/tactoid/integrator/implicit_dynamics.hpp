@@ -68,9 +68,22 @@ struct ImplicitReport {
   std::size_t failed = 0;             ///< repeated because Newton's method failed
   std::size_t newton_iterations = 0;  ///< in all attempts
   std::size_t linear_iterations = 0;  ///< of GMRES
-  std::size_t factorizations = 0;     ///< of the tangent
+  std::size_t factorizations = 0;     ///< of tangents
   double smallest_step = std::numeric_limits<double>::infinity();  ///< accepted, s
   double largest_step = 0.0;                                       ///< accepted, s
+
+  /// For checkpoints: all of it.
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("steps", steps);
+    archive("rejected", rejected);
+    archive("failed", failed);
+    archive("newton_iterations", newton_iterations);
+    archive("linear_iterations", linear_iterations);
+    archive("factorizations", factorizations);
+    archive("smallest_step", smallest_step);
+    archive("largest_step", largest_step);
+  }
 };
 
 /// What ImplicitDynamics keeps from step to step.
@@ -103,14 +116,14 @@ struct ImplicitPast {
 /// Implicit dynamics by the two-step backward differentiation formula with variable steps (BDF2),
 ///   v_{n+1} = [(1 + 2ω)/(1 + ω) u_{n+1} − (1 + ω) u_n + ω²/(1 + ω) u_{n−1}]/Δt,   ω = Δt/Δt₋,
 /// the same for the acceleration from v and for the director; the first step is a backward Euler step (ω = 0). Of second order,
-/// and stable for any step on linear problems (damped without limit in the stiffest modes), so that steps follow what is to be
-/// resolved and not the waves. `inertia = false` is the overdamped limit, in which all forces balance at every instant: every
+/// and, while the step does not change, stable for any step on linear problems (damped without limit in the stiffest modes), so that steps
+/// follow what is to be resolved and not the waves. `inertia = false` is the overdamped limit, in which all forces balance at every instant: every
 /// motion must then meet a viscous or elastic resistance (a body that nothing holds does not).
 ///
 /// The step keeps the local error (the difference to a quadratic prediction: Milne's device) below `tolerance`; a step that
 /// fails is repeated with a quarter. The energy that the scheme takes out of fast motions shows in the ledger's balance.
-/// Histories of materials, directors, contacts and boundary terms are all taken at the end of the step. What contacts remember
-/// (bonds) moves on once a step, at the positions of its end: of first order.
+/// Histories of materials, directors, contacts and boundary terms are all taken at the positions of the end of the step. What contacts
+/// remember (bonds) moves on once a step, when that is known, and contacts are told the time of its start until then: of first order.
 ///
 /// Bodies with essential conditions need a value-based quadrature (NodalCentroids).
 struct ImplicitDynamics {
@@ -121,7 +134,7 @@ struct ImplicitDynamics {
   double time_step = 0.0;          ///< fixed step, s; 0: chosen by the local error
   double first_time_step = 0.0;    ///< of a chosen step, s; 0: that of an explicit scheme
   double max_time_step = std::numeric_limits<double>::infinity();  ///< cap, s
-  double min_time_step = 1e-15;    ///< floor, s: below it the run stops
+  double min_time_step = 1e-15;    ///< floor, s: where a shorter step is needed the run stops
   double newton_tolerance = 1e-7;  ///< last correction of Newton's method, as `tolerance` is meant; > 0
   int max_newton_iterations = 12;  ///< per attempt
   int max_cuts = 4;                ///< halvings of a correction that inverts a point or does not help
@@ -152,6 +165,7 @@ struct ImplicitDynamics {
   template <class System>
   void initialize(System& system) {
     validate();
+    past = {};
     auto&& problem = system.implicit_problem();
     static_assert(ImplicitProblem<std::remove_reference_t<decltype(problem)>>, "The system of ImplicitDynamics has an implicit_problem() that is an ImplicitProblem.");
     problem.state(past.z, past.rate);
@@ -168,25 +182,47 @@ struct ImplicitDynamics {
     auto&& problem = system.implicit_problem();
     const double remaining = until - problem.time();
     if (remaining <= 0.0) return;
-    double wanted = time_step > 0.0 ? time_step : std::min(past.next_step, max_time_step);
-    if (past.last_step > 0.0 && time_step == 0.0) wanted = std::min(wanted, largest_growth * past.last_step);
+    if (past.last_step == 0.0) {  // the state may have been changed since initialize()
+      problem.state(past.z, past.rate);
+      past.z_before = past.z;
+      past.rate_before = past.rate;
+    }
+    const auto back = [&] {  // to where the step began
+      Eigen::VectorXd ignored;
+      (void)problem.residual(past.z, past.rate, Eigen::VectorXd::Zero(past.z.size()), 0.0, ignored);
+    };
+    past.cause.clear();
+    double wanted = time_step;
+    if (time_step == 0.0) {
+      wanted = std::min(past.next_step, max_time_step);
+      if (past.last_step > 0.0) wanted = std::min(wanted, largest_growth * past.last_step);
+      wanted = std::max(wanted, min_time_step);  // events may have cut the last one
+    }
     for (;;) {
       if (!(wanted >= min_time_step)) give_up(problem, wanted);
-      double dt = remaining / std::ceil(remaining / wanted * (1.0 - 1e-12));
+      double dt = remaining / std::max(1.0, std::ceil(remaining / wanted * (1.0 - 1e-12)));
       if (time_step > 0.0) dt = std::min(wanted, remaining);
-      const Attempt attempt = solve(problem, dt);
+      Attempt attempt;
+      try {
+        attempt = solve(problem, dt);
+      } catch (...) {
+        back();
+        throw;
+      }
       if (!attempt.converged) {
         ++past.report.failed;
-        Eigen::VectorXd ignored;
-        problem.residual(past.z, past.rate, Eigen::VectorXd::Zero(past.z.size()), 0.0, ignored);  // back to where the step began
+        back();
         if (time_step > 0.0) give_up(problem, dt);
         wanted = 0.25 * dt;
         continue;
       }
-      // Steps change by as much that the error is half of what is allowed: an error of the third power of the step.
-      const double share = attempt.error > 0.0 ? std::cbrt(0.5 * tolerance / attempt.error) : largest_growth;
-      if (time_step == 0.0 && attempt.error > tolerance && dt > min_time_step) {
+      // Steps change by as much that the error is half of what is allowed: of the third power of the step, of the second in the first.
+      const double ratio = attempt.error > 0.0 ? 0.5 * tolerance / attempt.error : std::numeric_limits<double>::infinity();
+      const double share = past.last_step > 0.0 ? std::cbrt(ratio) : std::sqrt(ratio);
+      if (time_step == 0.0 && attempt.error > tolerance) {
         ++past.report.rejected;
+        back();
+        past.cause.clear();
         wanted = std::clamp(share, 0.2, 0.9) * dt;
         continue;
       }
@@ -225,6 +261,7 @@ struct ImplicitDynamics {
     archive("next_step", past.next_step);
     archive("factor_rate", past.factor_rate);
     archive("linear_iterations", past.last_linear_iterations);
+    archive.part("report", past.report);
     std::vector<double> values(past.matrix.valuePtr(), past.matrix.valuePtr() + past.matrix.nonZeros());
     std::vector<int> rows(past.matrix.innerIndexPtr(), past.matrix.innerIndexPtr() + past.matrix.nonZeros());
     std::vector<int> columns;
@@ -273,8 +310,8 @@ struct ImplicitDynamics {
     // Quadratic through the last two values and the last rate.
     a.z = past.z + dt * past.rate;
     if (past.last_step > 0.0) a.z += (dt * dt / (past.last_step * past.last_step)) * (past.z_before - past.z + past.last_step * past.rate);
-    const Eigen::VectorXd predicted = a.z;
     problem.prescribe(dt, a.z);
+    const Eigen::VectorXd predicted = a.z;  // what is prescribed has no error
     const auto complete = [&](const Eigen::VectorXd& z, Eigen::VectorXd& rate, Eigen::VectorXd& acceleration) {
       rate = formula.factor * z + formula.now * past.z + formula.before * past.z_before;
       if (inertia) acceleration = formula.factor * rate + formula.now * past.rate + formula.before * past.rate_before;
@@ -295,7 +332,9 @@ struct ImplicitDynamics {
     const auto weighted = [&](const Eigen::VectorXd& x) { return x.cwiseQuotient(scale).cwiseAbs().maxCoeff(); };
     const auto refresh = [&] {
       past.matrix = problem.tangent(formula.factor, inertia ? formula.factor * formula.factor : 0.0, dt);
+      past.matrix.makeCompressed();
       past.factor_rate = formula.factor;
+      ++past.report.factorizations;
       return factorize();
     };
     const bool direct = solver == ImplicitSolver::direct;
@@ -303,6 +342,7 @@ struct ImplicitDynamics {
     if (direct || !past.inverse || past.last_linear_iterations > refresh_after || !(change > 0.4 && change < 2.5))
       if (!refresh()) return fail(a, "the tangent is singular: a rigid motion is left free, or modes are not seen by the quadrature");
     Eigen::VectorXd correction = past.inverse->apply(-R);
+    if (!correction.allFinite()) return fail(a, "the tangent is singular: a rigid motion is left free, or modes are not seen by the quadrature");
     double size = weighted(correction);
     const auto converged = [&] {
       complete(a.z, a.rate, a.acceleration);
@@ -327,7 +367,7 @@ struct ImplicitDynamics {
             correction.cwiseQuotient(scale), linear_tolerance, max_linear_iterations);
         past.report.linear_iterations += static_cast<std::size_t>(solution.iterations);
         past.last_linear_iterations = solution.iterations;
-        if (solution.iterations == 0 || !solution.x.allFinite()) return fail(a, "the linear system has no solution");
+        if (solution.x.isZero(0.0) || !solution.x.allFinite()) return fail(a, "the linear system has no solution");
         delta = solution.x.cwiseProduct(scale);
       }
       const double moves = weighted(delta);
@@ -338,6 +378,7 @@ struct ImplicitDynamics {
         z = a.z + factor * delta;
         if (!residual(z, next_R)) continue;
         correction = past.inverse->apply(-next_R);
+        if (!correction.allFinite()) continue;
         next = weighted(correction);
         better = next <= (1.0 - 0.25 * factor) * size || next <= newton_tolerance;
         if (better) break;
@@ -349,7 +390,6 @@ struct ImplicitDynamics {
       size = next;
       if (size <= newton_tolerance || factor * moves <= 1e-2 * newton_tolerance) return converged();
       if (direct || past.last_linear_iterations > refresh_after) {
-        residual(a.z, R);  // the tangent is that of the last residual
         if (!refresh()) return fail(a, "the tangent is singular");
         correction = past.inverse->apply(-R);
         size = weighted(correction);
@@ -371,7 +411,6 @@ struct ImplicitDynamics {
   }
 
   bool factorize() {
-    ++past.report.factorizations;
     past.inverse = std::make_shared<ImplicitPast::Inverse>();
     past.inverse->whole = solver == ImplicitSolver::direct || preconditioner == Preconditioner::factorization;
     bool done;
@@ -402,7 +441,6 @@ struct ImplicitDynamics {
                                        past.cause.empty() ? "the local error asks for too short a step" : past.cause, dt,
                                        time_step > 0.0 ? ", which is fixed: try a shorter one" : ""));
   }
-
 };
 
 }  // namespace tactoid

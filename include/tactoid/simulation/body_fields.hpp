@@ -32,13 +32,15 @@ struct BodyFields {
     if (body.particle_values().identity()) {
       parallel_for(body.size(), [&](std::size_t i) {
         position[i] = reference[i] + body.displacement[i];
-        velocity[i] = body.velocity[i] + (lag / body.masses()[i]) * body.force[i];
+        velocity[i] = body.velocity[i];
+        if (lag > 0.0) velocity[i] += (lag / body.masses()[i]) * body.force[i];  // else the forces may be those of a state that broke down
         force[i].setZero();
       });
     } else {
       position = body.at_particles(body.displacement);
       Field v = body.velocity;
-      for (std::size_t i = 0; i < v.size(); ++i) v[i] += (lag / body.masses()[i]) * body.force[i];
+      if (lag > 0.0)
+        for (std::size_t i = 0; i < v.size(); ++i) v[i] += (lag / body.masses()[i]) * body.force[i];
       velocity = body.at_particles(v);
       for (std::size_t i = 0; i < position.size(); ++i) position[i] += reference[i];
       std::fill(force.begin(), force.end(), Vector4::Zero());

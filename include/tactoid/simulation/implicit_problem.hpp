@@ -20,9 +20,9 @@ namespace tactoid {
 /// A Simulation as an ImplicitProblem. Unknowns are the displacements of all bodies, body by body and particle by particle, and
 /// behind each body's displacements its directors (three components):
 ///   0 = M ü − f(u, u̇, h),   0 = ḣ − A(u̇) h − (D/V_I) flux_I(u, h) + D J r(h).
-/// Prescribed displacements and anchored directors are held. The tangent has all of the bodies' laws, the contacts and terms that
-/// know their stiffness, and the director's diffusion, penalty and turning; it leaves out how director and motion
-/// depend on each other.
+/// Prescribed displacements and anchored directors are held. The tangent has all of the laws of the bodies, the contacts and terms that
+/// know their stiffness (where unknowns are values at the particles), and the diffusion, penalty and turning of the director; it leaves out
+/// how director and motion depend on each other.
 template <class Simulation>
 class SimulationProblem {
  public:
@@ -40,8 +40,8 @@ class SimulationProblem {
     for_each_essential([&](const auto& body, std::size_t b, const EssentialConditions& essential) {
       if (essential.empty()) return;
       if (!essential.on_values())
-        throw ParameterError("Body \"" + body.name() + "\": ImplicitDynamics takes prescribed motion only where unknowns are values at the "
-                             "particles; use a value-based quadrature, such as NodalCentroids.");
+        throw ParameterError("Body \"" + body.name() + "\": ImplicitDynamics takes prescribed motion (which a meridian section has on its axis) only where unknowns are "
+                             "values at the particles; use a value-based quadrature, such as NodalCentroids.");
       for (int c = 0; c < dimension; ++c)
         for (const auto& condition : essential.conditions(c)) held_[static_cast<std::size_t>(place(b, condition.particle) + c)] = 1;
     });
@@ -203,7 +203,9 @@ class SimulationProblem {
   void add_director(const Body& body, std::size_t b, double rate_factor, std::vector<Eigen::Triplet<double>>& entries) const {
     const PointTable& table = body.table();
     const auto& law = body.director_law();
-    StiffnessMatrix L = detail::stiffness_pattern<1>(table);
+    // Around an axis a component along it has no part (h_R, h_θ have one) that turns with the angle.
+    StiffnessMatrix L = detail::stiffness_pattern<1>(table), along_axis;
+    if (table.axisymmetric) along_axis = L;
     for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
       for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
         auto row = table.row(q);
@@ -217,17 +219,21 @@ class SimulationProblem {
         const Tensor3 flux = table.volume[q] * F.determinant() * (F.transpose() * F).inverse();
         detail::for_each_block<1>(L, row, [&](std::size_t a, std::size_t c, int at) {
           const Eigen::Map<const Vector3> Ga(row[a].gradient), Gc(row[c].gradient);
-          L.valuePtr()[L.outerIndexPtr()[row[c].particle] + at] += Ga.dot(flux * Gc);
+          const Eigen::Index place = L.outerIndexPtr()[row[c].particle] + at;
+          L.valuePtr()[place] += Ga.dot(flux * Gc);
+          if (table.axisymmetric) along_axis.valuePtr()[place] += Ga.head<2>().dot(flux.topLeftCorner<2, 2>() * Gc.head<2>());
         });
       }
     });
-    for (Eigen::Index j = 0; j < L.outerSize(); ++j)
-      for (StiffnessMatrix::InnerIterator it(L, j); it; ++it)
-        for (int c = 0; c < 3; ++c) {
+    for (int c = 0; c < 3; ++c) {
+      const StiffnessMatrix& of_component = table.axisymmetric && c == 1 ? along_axis : L;
+      for (Eigen::Index j = 0; j < L.outerSize(); ++j)
+        for (StiffnessMatrix::InnerIterator it(of_component, j); it; ++it) {
           const auto i = static_cast<std::size_t>(it.row());
           entries.emplace_back(static_cast<int>(director_place(b, i)) + c, static_cast<int>(director_place(b, static_cast<std::size_t>(j))) + c,
                                law.diffusivity / body.nodal_volumes()[i] * it.value());
         }
+    }
     for (std::size_t i = 0; i < body.size(); ++i) {
       const auto [A, J] = body.director_rate(i);
       const Vector3 h = body.director[i].template head<3>();

@@ -43,6 +43,7 @@ namespace tactoid {
 template <class BodiesType, class ContactsType, class BoundariesType, class IntegratorType>
 class Simulation;
 
+/// Defined in implicit_problem.hpp, which programs with implicit steps include.
 template <class SimulationType>
 class SimulationProblem;
 
@@ -206,6 +207,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   template <class Archive>
   void state(Archive& archive) {
     archive("time", time_);
+    archive("evaluated", evaluated_);
     archive("last_step", last_step_);
     archive("step_before", step_before_);
     archive("steps", steps_);
@@ -271,21 +273,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
 
   /// Forces and energies at the present state; histories and directors are advanced by the last step.
-  void evaluate() {
-    const StepEnergies energies = forces(time_, time_, last_step_);
-    for_each_body([&](const auto& body, std::size_t) { check(body); });
-    // All bodies are sound: what the step has brought is kept.
-    for_each_body([&](auto& body, std::size_t) {
-      body.accept_histories();
-      if constexpr (std::decay_t<decltype(body)>::has_director && !synchronous<I>) advance_director(body, last_step_);
-    });
-    for_each_contact([&](auto& between, std::size_t) {
-      using Pair = std::decay_t<decltype(between)>;
-      if constexpr (requires { between.contact.anchor(std::get<Pair::first>(bodies_)); }) between.contact.anchor(std::get<Pair::first>(bodies_));
-    });
-    book(energies);
-    drifted_ = false;
-  }
+  void evaluate() { evaluate(false); }
 
   // --- what an implicit integrator uses ----------------------------------------------------------------------
   /// The simulation as equations for the state at the end of a step; for the length of a step.
@@ -298,7 +286,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// (s) from time(). Nothing is kept: histories are advanced only tentatively, and contacts are told the time at the start
   /// of the step, so that what they remember stays. False where a point is inverted or something is not finite.
   [[nodiscard]] bool try_state(double time_step) {
-    (void)forces(time_, time_ + time_step, time_step);
+    (void)forces(evaluated_, time_ + time_step, time_step);
     bool sound = true;
     for_each_body([&](const auto& body, std::size_t) {
       sound = sound && body.failed_point() == body.table().points() &&
@@ -310,12 +298,13 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Keeps the present state as that at the end of a step of `time_step` (s): histories, what contacts remember, energies.
   /// `holding` are the forces that hold the prescribed values of each body, N per particle.
   void accept_state(double time_step, const std::array<Field, body_count>& holding) {
+    const bool from_rest = last_step_ == 0.0 && !inertial();
     time_ += time_step;
     last_step_ = time_step;
     for_each_body([&](auto&, std::size_t b) {
-      if (!essential_[b].empty()) ledger_.external_work += essential_[b].accept(time_, time_step, holding[b]);
+      if (!essential_[b].empty()) ledger_.external_work += essential_[b].accept(time_, time_step, holding[b], from_rest);
     });
-    evaluate();
+    evaluate(from_rest);
   }
 
   /// Sets the prescribed values at the end of a step of `time_step` (s).
@@ -359,13 +348,30 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         return 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
       });
     });
-    if constexpr (requires { integrator_.inertia; })
-      if (!integrator_.inertia) energies.kinetic = 0.0;
+    if (!inertial()) energies.kinetic = 0.0;
     return energies;
   }
 
+  /// `from_rest`: the step began where no velocity was known, so that its powers are those of its end.
+  void evaluate(bool from_rest) {
+    const StepEnergies energies = forces(time_, time_, last_step_);
+    for_each_body([&](const auto& body, std::size_t) { check(body); });
+    // All bodies are sound: what the step has brought is kept.
+    for_each_body([&](auto& body, std::size_t) {
+      body.accept_histories();
+      if constexpr (std::decay_t<decltype(body)>::has_director && !synchronous<I>) advance_director(body, last_step_);
+    });
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      if constexpr (requires { between.contact.anchor(std::get<Pair::first>(bodies_)); }) between.contact.anchor(std::get<Pair::first>(bodies_));
+    });
+    book(energies, from_rest);
+    evaluated_ = time_;
+    drifted_ = false;
+  }
+
   /// Enters a step in the ledger.
-  void book(const StepEnergies& energies) {
+  void book(const StepEnergies& energies, bool from_rest) {
     ledger_.kinetic = energies.kinetic;
     ledger_.strain = energies.internal.strain_energy;
     ledger_.stabilization = energies.internal.stabilization_energy;
@@ -380,6 +386,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     } else {
       ledger_.external_work += last_step_ * energies.internal.active_power;
       ledger_.dissipated += last_step_ * energies.internal.dissipated_power;
+    }
+    if (from_rest) {
+      external_power_ = external_power;
+      dissipated_power_ = dissipated_power;
     }
     ledger_.external_work += 0.5 * last_step_ * (external_power_ + external_power);
     ledger_.dissipated += 0.5 * last_step_ * (dissipated_power_ + dissipated_power);
@@ -399,9 +409,16 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     observer.begin(*this);
   }
 
+  /// Whether masses resist: not in an overdamped scheme.
+  [[nodiscard]] bool inertial() const {
+    if constexpr (requires { integrator_.inertia; }) return integrator_.inertia;
+    else return true;
+  }
+
   /// Half a step with the forces at the present state; those of the conditions are the last ones.
   template <class Body>
   [[nodiscard]] Vector4 present_velocity(const Body& body, std::size_t b, std::size_t i) const {
+    if constexpr (velocity_lag == 0.0) return body.velocity[i];
     Vector4 force = body.force[i];
     if (!essential_[b].empty()) force += essential_[b].forces()[i];
     return body.velocity[i] + (velocity_lag * last_step_ / body.masses()[i]) * force;
@@ -466,6 +483,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   EnergyLedger ledger_;
   double external_power_ = 0.0, dissipated_power_ = 0.0;  // of contacts and boundary terms at the last evaluation, W
   double time_ = 0.0, last_step_ = 0.0, step_before_ = 0.0;
+  double evaluated_ = 0.0;  // the time at which contacts were last told to move on, s: time_ but for round-off
   std::size_t steps_ = 0;
   bool drifted_ = false;  // displacements have moved on, forces have not
   double run_start_ = 0.0;
