@@ -12,19 +12,26 @@ namespace {
 
 using namespace tactoid;
 
-/// Implicit steps that end a run which crawls: before a point is inverted, steps get shorter and shorter.
+/// Implicit steps that end a run which crawls: before a point is inverted, or where Newton's method stumbles over the edges of facets,
+/// steps get shorter and shorter.
 struct ImpatientSteps : ImplicitDynamics {
-  double least_share = 1e-4;  ///< of the longest step so far
-  int allowed = 200;          ///< steps in a row that may be shorter
-  int shorter = 0;            ///< steps in a row that were
+  double least_share = 1e-3;  ///< of the longest step so far
+  int allowed = 300;          ///< more steps that are shorter than steps that are not
+  int shorter = 0;            ///< more steps that were shorter
 
   template <class System>
   void step(System& system, double until) {
     ImplicitDynamics::step(system, until);
-    shorter = past.last_step < least_share * past.report.largest_step ? shorter + 1 : 0;
+    shorter = past.last_step < least_share * past.report.largest_step ? shorter + 1 : std::max(0, shorter - 1);
     if (shorter > allowed)
-      throw ComputationError(fmt::format("The steps at t = {:.6g} s have fallen to {:.2g} s, from {:.2g} s: a point is about to be inverted.", system.time(),
+      throw ComputationError(fmt::format("The steps at t = {:.6g} s have fallen to {:.2g} s, from {:.2g} s: a point is about to be inverted, or "
+                                         "surfaces touch in a way that Newton's method does not follow.", system.time(),
                                          past.last_step, past.report.largest_step));
+  }
+  template <class Archive>
+  void state(Archive& archive) {
+    ImplicitDynamics::state(archive);
+    archive("shorter", shorter);
   }
 };
 
