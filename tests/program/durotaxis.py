@@ -3,40 +3,17 @@
     python3 durotaxis.py DUROTAXIS SPREADING_GRADED [name of a test ...]
 """
 
-import os
-import pathlib
-import shutil
-import signal
-import subprocess
-import sys
-import tempfile
-import unittest
-
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples" / "common"))
-from continued_run import ENVIRONMENT, assert_same, interrupt
-from vtu_reader import read_history
+from spreading_program import SpreadingProgram, main
 
-PROGRAMS = []
 NEAR = ["--gap=1nm", "--resolution=0.4", "--end-time=1us", "--frames=2", "--samples=10", "--threads=1", "--preset=elastic", "--activity=-1kPa"]
 REACH = "--capture-distance=150nm"  # facets of so coarse a ball stay away from the substrate
 ADDED = ["bonds_plus_x", "bonds_minus_x", "pull_plus_x", "pull_minus_x", "bond_tension", "bond_force_y", "speed_max"]
 
 
-class Durotaxis(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="durotaxis_"))
-        self.addCleanup(shutil.rmtree, self.folder, True)
-
-    def run_program(self, out, *arguments, program=0, status=0):
-        result = subprocess.run([PROGRAMS[program], *NEAR, *arguments, f"--out={self.folder / out}"], capture_output=True, text=True,
-                                timeout=300, env=ENVIRONMENT)
-        self.assertEqual(result.returncode, status, result.stderr)
-        return result
-
-    def history(self, out):
-        return read_history(self.folder / out / "history.csv")
+class Durotaxis(SpreadingProgram):
+    common = NEAR
 
     def test_without_tethers_it_is_spreading_graded(self):
         self.run_program("off", "--tethers=off")
@@ -71,21 +48,13 @@ class Durotaxis(unittest.TestCase):
     def test_a_continued_run_has_the_same_bits(self):
         single = ["--tethers=stochastic", REACH]
         self.run_program("whole", *single)
-        interrupt(self, PROGRAMS[0], signal.SIGTERM, 5, *NEAR, *single, "--out", "cut")
-        result = subprocess.run([PROGRAMS[0], f"--restart={self.folder / 'cut' / 'checkpoint.h5'}", "--threads=2"], cwd=self.folder,
-                                capture_output=True, text=True, timeout=300, env=ENVIRONMENT)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        assert_same(self, "whole", "cut", "history.csv", "front.csv")
+        self.check_continued(5, *single)
 
     def test_bad_input(self):
-        for arguments, sentence in [(["--tethers=some"], "is not one of off, mean, stochastic"), (["--slip-force=0pN"], "--slip-force = 0 N is not allowed"),
-                                    (["--tether-density=-1"], "--tether-density"), (["--off-rate=1s"], "--off-rate"),
-                                    (["--rate-factor=0"], "--rate-factor = 0 is not allowed")]:
-            result = self.run_program("refused", *arguments, status=2)
-            self.assertIn(sentence, result.stderr)
-            self.assertFalse((self.folder / "refused").exists())
+        self.check_refused((["--tethers=some"], "is not one of off, mean, stochastic"), (["--slip-force=0pN"], "--slip-force = 0 N is not allowed"),
+                           (["--tether-density=-1"], "--tether-density"), (["--off-rate=1s"], "--off-rate"),
+                           (["--rate-factor=0"], "--rate-factor = 0 is not allowed"))
 
 
 if __name__ == "__main__":
-    PROGRAMS = [os.path.abspath(sys.argv.pop(1)), os.path.abspath(sys.argv.pop(1))]
-    unittest.main()
+    main()
