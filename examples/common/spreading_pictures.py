@@ -186,6 +186,12 @@ def seen_from_above(cell):
     return corners[up][order][:, :, :2], stress(cell)[facets].mean(axis=1)[up][order]
 
 
+def views_from_above(frames):
+    """The cell of each frame as (time, corners, stress), and what half of a picture needs to hold them all, µm."""
+    views = [(time, *seen_from_above(Grid(parts["cell"]))) for time, parts in frames]
+    return views, 1.15 * max(np.abs(corners).max() for _, corners, _ in views)
+
+
 def draw_from_above(axes, corners, stresses, norm, soft, stiff, half):
     """Such facets on the substrate whose factor grows with the angle, from `soft` at +x to `stiff` at −x; within ±half, µm."""
     x, y = np.meshgrid(np.linspace(-half, half, 201), np.linspace(-half, half, 201))

@@ -13,8 +13,8 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 from plot_program import run
-from spreading_pictures import draw_from_above, evenly, seen_from_above
-from vtu_reader import Grid, read_history, read_series
+from spreading_pictures import draw_from_above, evenly, views_from_above
+from vtu_reader import read_history, read_series
 
 import matplotlib
 
@@ -33,8 +33,7 @@ def main():
         parameters = tomllib.load(file)
     history = read_history(os.path.join(given.folder, "history.csv"))
     frames = evenly(read_series(os.path.join(given.folder, "fields.pvd"))[1:], 2)
-    views = [(time, *seen_from_above(Grid(parts["cell"]))) for time, parts in frames]
-    half = 1.15 * max(np.abs(corners).max() for _, corners, _ in views)
+    views, half = views_from_above(frames)
     norm = matplotlib.colors.Normalize(0.0, max(np.percentile(stress, 98) for _, _, stress in views), clip=True)
 
     plt.rcParams.update({"font.size": 9})

@@ -13,8 +13,8 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 from plot_program import run
-from spreading_pictures import draw_from_above, seen_from_above
-from vtu_reader import Grid, read_history, read_series
+from spreading_pictures import draw_from_above, views_from_above
+from vtu_reader import read_history, read_series
 
 import matplotlib
 
@@ -35,8 +35,7 @@ def main():
     frames = read_series(os.path.join(given.folder, "fields.pvd"))
     history = read_history(os.path.join(given.folder, "history.csv"))
     chosen = [frames[k] for k in sorted({round(f * (len(frames) - 1)) for f in (0.25, 0.5, 0.75, 1.0)})]
-    views = [(time, *seen_from_above(Grid(parts["cell"]))) for time, parts in chosen]
-    half = 1.15 * max(np.abs(corners).max() for _, corners, _ in views)
+    views, half = views_from_above(chosen)
     norm = matplotlib.colors.Normalize(0.0, max(np.percentile(stress, 99) for _, _, stress in views))
 
     plt.rcParams.update({"font.size": 9})
