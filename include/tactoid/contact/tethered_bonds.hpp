@@ -233,25 +233,9 @@ TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields&
   const auto extension = [&](std::size_t s, const Vector4& at) {
     return Vector4(at - master_.interpolate(anchor_facet_[s], anchor_[s], b.position));
   };
-  parallel_for(size(), [&](std::size_t s) {
-    const Vector4 at = points_[point_of_[s]];
-    const ClosestPoint<D>& nearest = closest[point_of_[s]];
+  // What the time of the step does to the bonds of a site, at the rate `off` of those that hold.
+  const auto kinetics = [&](std::size_t s, const Vector4& at, const ClosestPoint<D>& nearest, double off) {
     double& n = bound_[s];
-    dissipated_[s] = supplied_[s] = shown_[s] = 0.0;
-    if (!(n > 0.0) && !(nearest.gap < law.capture_distance)) return;
-    double off = law.kinetics.detachment_rate(0.0);
-    if (n > 0.0) {  // the motion of the step has done work on the bonds
-      const double r = extension(s, at).norm(), now = law.potential(r);
-      shown_[s] = stored_[s] + n * (now - potential_[s]);
-      if (!(step > 0.0)) {  // positions are tried: the bonds stay as they are
-        extension_[s] = extension(s, at);
-        force_[s] = r > 0.0 ? Vector4((-n * law.tension(r) / r) * extension_[s]) : Vector4(Vector4::Zero());
-        return;
-      }
-      stored_[s] = shown_[s];
-      off = law.kinetics.detachment_rate(law.tension(r));
-    }
-    if (!(step > 0.0)) return;
     const double on = nearest.gap < law.capture_distance ? law.kinetics.on_rate : 0.0, free = capacity_[s] - n;
     double left = n * std::exp(-off * step), joined = 0.0;
     if (law.stochastic) {
@@ -262,10 +246,10 @@ TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields&
       const double rest = capacity_[s] * on / (on + off);
       joined = std::max(0.0, rest + (n - rest) * std::exp(-(on + off) * step) - left);
     }
-    if (n > 0.0) dissipated_[s] = stored_[s] * (n - left) / n;
-    stored_[s] -= dissipated_[s];
+    if (n > 0.0) dissipated_[s] = shown_[s] * (n - left) / n;
+    shown_[s] -= dissipated_[s];
     supplied_[s] = joined * law.potential((at.template head<3>() - nearest.point).norm());
-    shown_[s] = stored_[s] += supplied_[s];
+    shown_[s] += supplied_[s];
     if (joined > 0.0) {
       if (left > 0.0) {
         const Vector4 anchor = at - extension(s, at);
@@ -279,11 +263,28 @@ TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields&
       }
     }
     n = left + joined;
+    stored_[s] = shown_[s];
+  };
+  parallel_for(size(), [&](std::size_t s) {
+    const Vector4 at = points_[point_of_[s]];
+    const ClosestPoint<D>& nearest = closest[point_of_[s]];
+    const double& n = bound_[s];
+    dissipated_[s] = supplied_[s] = shown_[s] = 0.0;
+    if (!(n > 0.0) && !(nearest.gap < law.capture_distance)) return;
+    shown_[s] = stored_[s];
+    double off = law.kinetics.detachment_rate(0.0);
+    if (n > 0.0) {  // the motion has done work on the bonds
+      const double r = extension(s, at).norm();
+      shown_[s] += n * (law.potential(r) - potential_[s]);
+      off = law.kinetics.detachment_rate(law.tension(r));
+    }
+    const bool moved_on = step > 0.0;  // else positions are tried, and the bonds stay as they are
+    if (moved_on) kinetics(s, at, nearest, off);
     extension_[s] = force_[s] = Vector4::Zero();
     if (!(n > 0.0)) return;
     extension_[s] = extension(s, at);
     const double r = extension_[s].norm();
-    potential_[s] = law.potential(r);
+    if (moved_on) potential_[s] = law.potential(r);
     if (r > 0.0) force_[s] = (-n * law.tension(r) / r) * extension_[s];
   });
   ++calls_;

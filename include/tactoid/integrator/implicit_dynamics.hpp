@@ -32,7 +32,7 @@ namespace tactoid {
 ///   SparseMatrix tangent(double rate_factor, double acceleration_factor, double dt);
 ///                                                       dR/dz at the last residual with ż = rate_factor z + …, and the like; unit
 ///                                                       rows where prescribed. It may be incomplete (newton_krylov)
-///   void accept(z, rate, acceleration, dt);             makes it the present state
+///   void accept(z, rate, acceleration, dt);             makes it the present state; with what the last residual was asked for
 template <class P>
 concept ImplicitProblem = requires(P& p, const Eigen::VectorXd& x, Eigen::VectorXd& y, double s) {
   { p.size() } -> std::convertible_to<Eigen::Index>;

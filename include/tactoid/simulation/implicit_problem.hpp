@@ -144,10 +144,8 @@ class SimulationProblem {
     return K;
   }
 
-  /// Makes it the present state of the simulation.
-  void accept(const Eigen::VectorXd& z, const Eigen::VectorXd& rate, const Eigen::VectorXd& acceleration, double dt) {
-    Eigen::VectorXd R(size_);
-    residual(z, rate, acceleration, dt, R);  // for the forces that hold the prescribed values
+  /// Makes the state of the last residual, which is this one, the present state of the simulation.
+  void accept(const Eigen::VectorXd&, const Eigen::VectorXd&, const Eigen::VectorXd&, double dt) {
     std::array<Field, Simulation::body_count> holding;
     simulation_.for_each_body([&](const auto& body, std::size_t b) {
       holding[b].assign(body.size(), Vector4::Zero());
@@ -208,14 +206,8 @@ class SimulationProblem {
     if (table.axisymmetric) along_axis = L;
     for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
       for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
-        auto row = table.row(q);
-        if (is_padding(table, q, table.offsets[q + 1] - 1)) row = row.first(row.size() - 1);
-        rows::Gradient du;
-        rows::gather(table.row(q), body.displacement.data(), du);
-        if (table.axisymmetric) rows::turn_around_axis(du);
-        Tensor3 F = Tensor3::Identity();
-        for (int k = 0; k < 3; ++k)
-          for (int i = 0; i < 3; ++i) F(i, k) += du.column[k][i];
+        const auto row = detail::pairs_of(table, q);
+        const Tensor3 F = Tensor3::Identity() + detail::gradient_at(table, q, body.displacement);
         const Tensor3 flux = table.volume[q] * F.determinant() * (F.transpose() * F).inverse();
         detail::for_each_block<1>(L, row, [&](std::size_t a, std::size_t c, int at) {
           const Eigen::Map<const Vector3> Ga(row[a].gradient), Gc(row[c].gradient);
@@ -240,14 +232,8 @@ class SimulationProblem {
       const double penalty = law.diffusivity * J / (law.core_size * law.core_size);
       Tensor3 local = (rate_factor + penalty * (h.squaredNorm() - 1.0)) * Tensor3::Identity() - A;
       local += (2.0 * penalty) * h * h.transpose();
-      add_block<3>(director_place(b, i), director_place(b, i), local, entries);
+      detail::add_block<3>(director_place(b, i), director_place(b, i), local, entries);
     }
-  }
-
-  template <int N>
-  static void add_block(Eigen::Index row, Eigen::Index column, const Tensor3& k, std::vector<Eigen::Triplet<double>>& entries) {
-    for (int c = 0; c < N; ++c)
-      for (int r = 0; r < N; ++r) entries.emplace_back(static_cast<int>(row) + r, static_cast<int>(column) + c, k(r, c));
   }
 
   // What is known at the particles is known for the unknowns where these are values at the particles.
@@ -261,7 +247,7 @@ class SimulationProblem {
           return;
         between.contact.add_stiffness(simulation_.template particles<Pair::first>(), simulation_.template particles<Pair::second>(),
                                       [&](bool of_b, Index i, bool by_b, Index j, const Tensor3& k) {
-                                        add_block<dimension>(place(body[of_b], i), place(body[by_b], j), k, entries);
+                                        detail::add_block<dimension>(place(body[of_b], i), place(body[by_b], j), k, entries);
                                       });
       }
     });
@@ -272,7 +258,7 @@ class SimulationProblem {
       if constexpr (TermWithStiffness<std::decay_t<decltype(on.term)>>) {
         if (!simulation_.template body<b>().particle_values().identity()) return;
         on.term.add_stiffness(simulation_.template particles<b>(), [&](Index i, Index j, const Tensor3& k) {
-          add_block<dimension>(place(b, i), place(b, j), k, entries);
+          detail::add_block<dimension>(place(b, i), place(b, j), k, entries);
         });
       }
     });

@@ -122,9 +122,7 @@ class StaticProblem {
     const auto n = static_cast<Eigen::Index>(dimension * body_.size());
     std::vector<Eigen::Triplet<double>> entries;
     const auto emit = [&](Index i, Index j, const Tensor3& k) {
-      for (int r = 0; r < dimension; ++r)
-        for (int c = 0; c < dimension; ++c)
-          entries.emplace_back(dimension * static_cast<int>(i) + r, dimension * static_cast<int>(j) + c, fraction_ * k(r, c));
+      detail::add_block<dimension>(dimension * static_cast<Eigen::Index>(i), dimension * static_cast<Eigen::Index>(j), fraction_ * k, entries);
     };
     const auto add = [&](const auto& term) {
       if constexpr (TermWithStiffness<std::decay_t<decltype(term)>>) term.add_stiffness(fields_.view(), emit);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -45,6 +46,30 @@ template <int D>
           K.insert(static_cast<Eigen::Index>(D * i) + r, static_cast<Eigen::Index>(D * j) + c) = 0.0;
   K.makeCompressed();
   return K;
+}
+
+/// The entries of a row, without the one that fills it up.
+[[nodiscard]] inline std::span<const TableEntry> pairs_of(const PointTable& table, std::size_t q) {
+  const auto row = table.row(q);
+  return is_padding(table, q, table.offsets[q + 1] - 1) ? row.first(row.size() - 1) : row;
+}
+
+/// ∂f/∂X of a field at a point.
+[[nodiscard]] inline Tensor3 gradient_at(const PointTable& table, std::size_t q, const Field& f) {
+  rows::Gradient df;
+  rows::gather(table.row(q), f.data(), df);
+  if (table.axisymmetric) rows::turn_around_axis(df);
+  Tensor3 gradient;
+  for (int K = 0; K < 3; ++K)
+    for (int i = 0; i < 3; ++i) gradient(i, K) = df.column[K][i];
+  return gradient;
+}
+
+/// Adds the first N × N of a block to the entries of a matrix, whose first place is (row, column).
+template <int N>
+void add_block(Eigen::Index row, Eigen::Index column, const Tensor3& k, std::vector<Eigen::Triplet<double>>& entries) {
+  for (int c = 0; c < N; ++c)
+    for (int r = 0; r < N; ++r) entries.emplace_back(static_cast<int>(row) + r, static_cast<int>(column) + c, k(r, c));
 }
 
 /// The law's history at one lane of a block.
@@ -127,28 +152,15 @@ template <class Body>
     for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
       if (chunk.region != r) return;
       for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
-        auto row = table.row(q);
-        if (is_padding(table, q, table.offsets[q + 1] - 1)) row = row.first(row.size() - 1);
+        const auto row = detail::pairs_of(table, q);
         PointState<double> state;
         state.time_step = step.time_step;
-        rows::Gradient du, dv, dh;
-        rows::gather(table.row(q), body.displacement.data(), du);
-        if (table.axisymmetric) rows::turn_around_axis(du);
-        if (step.rate_factor > 0.0) {
-          rows::gather(table.row(q), body.velocity.data(), dv);
-          if (table.axisymmetric) rows::turn_around_axis(dv);
-        }
+        state.deformation_gradient += detail::gradient_at(table, q, body.displacement);
+        if (step.rate_factor > 0.0) state.deformation_rate = detail::gradient_at(table, q, body.velocity);
         if constexpr (Body::has_director) {
-          rows::gather(table.row(q), body.director.data(), dh);
-          if (table.axisymmetric) rows::turn_around_axis(dh);
+          state.director_gradient = detail::gradient_at(table, q, body.director);
           state.director = body.director[table.owner[q]].template head<3>();
         }
-        for (int k = 0; k < 3; ++k)
-          for (int i = 0; i < 3; ++i) {
-            state.deformation_gradient(i, k) += du.column[k][i];
-            state.deformation_rate(i, k) = dv.column[k][i];
-            state.director_gradient(i, k) = dh.column[k][i];
-          }
         const int l = static_cast<int>((q - region.begin) % static_cast<std::size_t>(region.width));
         const auto history = detail::history_at_lane<Law, typename std::decay_t<decltype(region)>::Scalar>(
             region.histories[region.block(q)], l);
