@@ -15,6 +15,17 @@ namespace tactoid {
 /// The substrate of the paper, of a stiffness that depends on the place.
 using GradedSubstrate = Graded<std::function<YangVisco<>(const Vector3&)>>;
 
+/// Factors on the constants of the base substrate on its two sides.
+struct StiffnessGradient {
+  double soft = 2.0;    ///< at +x
+  double stiff = 10.0;  ///< at −x
+
+  void add_to(Options& options) {
+    options.add("soft", &soft, Range::positive(), "Factor on the constants of the base substrate on the side +x");
+    options.add("stiff", &stiff, Range::positive(), "Factor on the constants of the base substrate on the side -x");
+  }
+};
+
 /// Parameters of a cell that spreads on a substrate. The defaults are those of Zeng and Li, Soft Matter 2012, 8, 5765;
 /// those that the paper does not give are marked, with their reason.
 struct SpreadingParameters {
@@ -211,11 +222,11 @@ struct SpreadingParameters {
         .density = substrate_density, .c1 = substrate_c1, .c2 = substrate_c2, .lambda = substrate_lambda};
     return {.elastic = base.scaled(factor), .a1 = viscous * a1, .a2 = viscous * a2, .a3 = a3};
   }
-  /// The substrate whose factor grows with the angle, from `soft` on the side +x to `stiff` on the side −x (Fig. 11).
-  [[nodiscard]] GradedSubstrate graded_substrate(double soft, double stiff) const {
-    return {[*this, soft, stiff](const Vector3& X) {
+  /// The substrate whose factor grows with the angle from one side to the other (Fig. 11).
+  [[nodiscard]] GradedSubstrate graded_substrate(const StiffnessGradient& gradient) const {
+    return {[*this, gradient](const Vector3& X) {
       const double angle = std::abs(std::atan2(X[1], X[0]));  // θ, 0 … π
-      return substrate_law(soft + (stiff - soft) * angle / std::numbers::pi);
+      return substrate_law(gradient.soft + (gradient.stiff - gradient.soft) * angle / std::numbers::pi);
     }};
   }
   /// In the meridian section a uniform director is along the axis.

@@ -13,17 +13,16 @@ int main(int argc, char** argv) {
     SpreadingParameters p{.activity = -1000.0, .preset = "elastic"};
     SpreadingRun run{.out = "out/durotaxis"};
     Tethers tethers;
-    double soft = 2.0, stiff = 10.0;
+    StiffnessGradient gradient;
     Options options("durotaxis",
                     "A contractile cell on a substrate whose stiffness grows with the angle, from the side +x to the side -x, held by bonds "
                     "between material points.");
-    options.add("soft", &soft, Range::positive(), "Factor on the constants of the base substrate on the side +x");
-    options.add("stiff", &stiff, Range::positive(), "Factor on the constants of the base substrate on the side -x");
+    gradient.add_to(options);
     tethers.add_to(options);
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
-    run(SpreadingCase{p, p.graded_substrate(soft, stiff), tethers}, options);
+    run(SpreadingCase{p, p.graded_substrate(gradient), tethers}, options);
     return 0;
   });
 }

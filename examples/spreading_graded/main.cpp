@@ -10,16 +10,15 @@ int main(int argc, char** argv) {
   return run_program("spreading_graded", [&] {
     SpreadingParameters p;
     SpreadingRun run{.out = "out/spreading_graded"};
-    double soft = 2.0, stiff = 10.0;
+    StiffnessGradient gradient;
     Options options("spreading_graded",
                     "A cell spreads on a substrate whose stiffness grows with the angle, from the side +x to the side -x "
                     "(Zeng and Li, Soft Matter 2012, 8, 5765, Figs. 11 and 12).");
-    options.add("soft", &soft, Range::positive(), "Factor on the constants of the base substrate on the side +x");
-    options.add("stiff", &stiff, Range::positive(), "Factor on the constants of the base substrate on the side -x");
+    gradient.add_to(options);
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
-    run(SpreadingCase{p, p.graded_substrate(soft, stiff)}, options);
+    run(SpreadingCase{p, p.graded_substrate(gradient)}, options);
     return 0;
   });
 }
