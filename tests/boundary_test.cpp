@@ -93,6 +93,8 @@ TEST_CASE("surface tension: gradient of the energy, no net force or torque, viri
   const auto body2 = rough_circle(0.3 * um);
   check_conservative(SurfaceTension{}, body3, 1e-9);
   check_conservative(SurfaceTension{}, body2, 1e-9);
+  check_conservative(SurfaceTension{.smoothing = 0.5}, body3, 1e-9);
+  check_conservative(SurfaceTension{.smoothing = 0.5}, body2, 1e-9);
   auto body = body3;
   SurfaceTension term{};
   term.initialize(body.cloud, body.fields());
@@ -103,6 +105,24 @@ TEST_CASE("surface tension: gradient of the energy, no net force or torque, viri
   term.initialize(plane.cloud, plane.fields());
   const double length = term.apply(plane.fields(), 0.0).potential;
   CHECK(plane.virial() == Close{-length, 1e-12});
+}
+
+TEST_CASE("the tension of a facet that vanishes and turns over jumps, unless it is smooth there") {
+  const auto jump = [](double smoothing) {
+    auto body = rough_circle(0.0);
+    const auto facet = body.cloud.facets.front();
+    SurfaceTension term{.smoothing = smoothing};
+    term.initialize(body.cloud, body.fields());
+    Vector4 force[2];
+    for (const int side : {0, 1}) {
+      body.position[facet[1]] = body.position[facet[0]] + (side == 0 ? 1e-5 : -1e-5) * um * Vector4(1.0, 0.0, 0.0, 0.0);
+      term.apply(body.fields(), 0.0);
+      force[side] = body.force[facet[1]];
+    }
+    return (force[0] - force[1]).norm() / sigma;
+  };
+  CHECK(jump(0.0) == Close{2.0, 1e-3});
+  CHECK(jump(0.1) < 1e-3);
 }
 
 TEST_CASE("surface tension of a sphere: area and nodal force converge with the square of the spacing") {
@@ -245,6 +265,7 @@ TEST_CASE("body force: constant with its energy, field with its power, dimension
   CHECK(plane.force[3][1] == 2.0 * plane.mass[3]);
   CHECK_THROWS_AS(BodyForce{.acceleration = Vector3(0, std::nan(""), 0)}.validate(), ParameterError);
   CHECK_THROWS_AS(SurfaceTension{.tension = -1.0}.validate(), ParameterError);
+  CHECK_THROWS_AS(SurfaceTension{.smoothing = 1.0}.validate(), ParameterError);
   CHECK_THROWS_AS(CurvatureSurfaceTension{.tension = -1.0}.validate(), ParameterError);
   CHECK_THROWS_AS(AmbientPressure{.pressure = INFINITY}.validate(), ParameterError);
 }

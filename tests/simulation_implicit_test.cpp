@@ -153,7 +153,7 @@ TEST_CASE("The assembled tangent is the derivative of the residual") {
   Body ball{"ball", meridian(Ball{.radius = um, .core_radius = 0.5 * um, .core_cells = 2, .shells = 1, .core_region = "body", .shell_region = "body"}), Rkpm<2>{},
             NodalCentroids{.fluid_modulus = 50.0}, Materials{Region{"body", NematicGel<>{.viscosity = 0.05, .bulk_modulus = 1e4, .activity = -500.0}}},
             DirectorField<>{}, UniformDirector(Vector3(0.5, 1.0, 0.3))};
-  Simulation section{Bodies{std::move(ball)}, Contacts{}, Boundaries{on<0>(SurfaceTension{})}, ImplicitDynamics{}};
+  Simulation section{Bodies{std::move(ball)}, Contacts{}, Boundaries{on<0>(SurfaceTension{.smoothing = 0.5})}, ImplicitDynamics{}};
   const Derivative rings(section);
   const Eigen::Index plane = 2 * static_cast<Eigen::Index>(section.body<0>().size()), turning = rings.exact.rows() - plane;
   CHECK(rings.error(0, plane, 0, plane) < 1e-7);

@@ -69,7 +69,7 @@ struct SpreadingCase {
         added.contacts());
     return Simulation{
         Bodies{std::move(cell_body), std::move(substrate_body)}, std::move(contacts),
-        Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension}), on<1>(fixed(bottom))},
+        Boundaries{on<0>(SurfaceTension{.tension = p.surface_tension, .smoothing = p.surface_smoothing}), on<1>(fixed(bottom))},
         integrator};
   }
 };

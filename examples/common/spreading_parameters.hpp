@@ -68,11 +68,13 @@ struct SpreadingParameters {
   double binding_energy = 0.024e-18;  ///< σ_b, J
   double bond_range = 100e-9;         ///< ε, m
   double surface_tension = 0.072e-3;  ///< σ₀, N/m
+  double surface_smoothing = 0.0;     ///< share of its size below which a facet's tension fades
 
   // Numerics
   double support = 1.75;           ///< of the kernel, per longest edge
   double hourglass = 0.12;         ///< stabilisation modulus over the shear modulus, in the solids
   double fluid_hourglass = 5.0;    ///< stabilisation modulus of the cytoplasm, Pa
+  double fluid_hourglass_viscosity = 2.5e-5;  ///< stabilisation viscosity of the cytoplasm, Pa s
   double safety = 0.8;             ///< of the stable time step
   double time_step = 0.0;          ///< s; 0: chosen by the library
   double min_time_step = 1e-15;    ///< s; a run whose stable step is shorter stops
@@ -138,10 +140,13 @@ struct SpreadingParameters {
     options.add_quantity("bond-range", &bond_range, Quantity::length, Range::positive(), "Range epsilon of the bonds");
     options.add_quantity("surface-tension", &surface_tension, Quantity::surface_tension, Range::non_negative(),
                          "Surface tension of the cell");
+    options.add("surface-smoothing", &surface_smoothing, Range::between(0.0, 0.9), "Share of its first size below which the tension of a facet fades");
     options.add("support", &support, Range::between(1.2, 4.0), "Support of the kernel per longest cell edge");
     options.add("hourglass", &hourglass, Range::non_negative(), "Stabilisation over shear modulus in the solids");
     options.add_quantity("fluid-hourglass", &fluid_hourglass, Quantity::pressure, Range::non_negative(),
                          "Stabilisation modulus of the cytoplasm");
+    options.add_quantity("fluid-hourglass-viscosity", &fluid_hourglass_viscosity, Quantity::viscosity, Range::non_negative(),
+                         "Stabilisation viscosity of the cytoplasm");
     options.add("safety", &safety, Range::between(0.01, 1.0), "Fraction of the stable time step");
     options.add_quantity("time-step", &time_step, Quantity::time, Range::non_negative(),
                          "Fixed time step; 0: chosen by the program");
@@ -237,7 +242,7 @@ struct SpreadingParameters {
     return initial_director(cloud, RandomDirector({.correlation_length = correlation_length, .seed = seed}));
   }
   [[nodiscard]] NodalCentroids quadrature() const {
-    return {.solid_ratio = hourglass, .fluid_modulus = fluid_hourglass};
+    return {.solid_ratio = hourglass, .fluid_modulus = fluid_hourglass, .fluid_viscosity = fluid_hourglass_viscosity};
   }
   [[nodiscard]] LigandReceptor ligand_receptor() const {
     return {.bond_density = bond_density, .binding_energy = binding_energy, .range = bond_range};

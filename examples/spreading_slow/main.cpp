@@ -3,6 +3,7 @@
 //   spreading_slow --out out/spreading_slow
 //   spreading_slow --elasticity 1kPa --viscosity 100Pa.s --tethers off
 #include <algorithm>
+#include <limits>
 
 #include "common/program.hpp"
 #include "common/spreading_run.hpp"
@@ -37,7 +38,7 @@ struct ImpatientSteps : ImplicitDynamics {
 
 /// The axisymmetric cell on its substrate with tethers, under an implicit integrator.
 struct SlowCase : SpreadingCase<YangVisco<>, 2, Tethers> {
-  ImpatientSteps integrator;
+  UpdatedReference<ImpatientSteps> integrator;
 
   [[nodiscard]] auto simulation() const { return SpreadingCase::simulation(integrator); }
 };
@@ -46,24 +47,26 @@ struct SlowCase : SpreadingCase<YangVisco<>, 2, Tethers> {
 
 int main(int argc, char** argv) {
   return run_program("spreading_slow", [&] {
-    SpreadingParameters p{.viscosity = 10.0, .activity = 0.0, .director = "radial", .preset = "elastic", .van_der_waals = 100.0, .min_time_step = 0.0,
+    SpreadingParameters p{.viscosity = 10.0, .activity = 0.0, .director = "radial", .preset = "elastic", .van_der_waals = 100.0, .surface_smoothing = 0.05, .fluid_hourglass_viscosity = 1.0, .min_time_step = 0.0,
                           .end_time = 600.0};
     // Steps are as long as the shape allows: what they take out of fast motion shows in the balance of energy, and stops no run.
     SpreadingRun run{.out = "out/spreading_slow", .frames = 24, .samples = 240, .energy_limit = 1e9};
     double elasticity = 10e3, longest = 0.0;
     // Bonds are as long as the gap at which adhesion holds the surfaces.
     Tethers tethers{.length = 100e-9, .capture_distance = 150e-9, .rate_factor = 1.0};
-    ImpatientSteps integrator;
+    UpdatedReference<ImpatientSteps> integrator{{}, 1.5, 1};
     Options options("spreading_slow", "A viscous cell of revolution adheres to and spreads on a substrate for minutes, in its meridian section.");
     options.add_quantity("elasticity", &elasticity, Quantity::pressure, Range::positive(), "Young's modulus of the substrate");
     options.add("inertia", &integrator.inertia, "Keep inertia; without it all forces balance at every instant");
     options.add("tolerance", &integrator.tolerance, Range::inside(0.0, 1.0), "Local error of a step over the size of a body");
     options.add_quantity("max-time-step", &longest, Quantity::time, Range::non_negative(), "Longest step; 0: none");
+    options.add("update-at", &integrator.distortion, Range::non_negative(), "Stretch of a point since the last update at which a body gets a new reference; 0: never");
     tethers.add_to(options);
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
     p.validate_axisymmetric();
+    if (integrator.distortion == 0.0) integrator.distortion = std::numeric_limits<double>::infinity();
     integrator.time_step = p.time_step;
     if (longest > 0.0) integrator.max_time_step = longest;
     integrator.min_time_step = p.min_time_step > 0.0 ? p.min_time_step : std::min(1e-12, 1e-6 * p.end_time);

@@ -22,6 +22,7 @@ struct SurfaceIntegral {
   FacetQuadrature<D> quadrature;                                     ///< 2 Gauss points along each side
   std::vector<std::array<Vector3, FacetSurface<D>::corners>> force;  ///< of each facet on its nodes
   std::vector<double> value;                                         ///< of each facet
+  std::vector<double> smallest;  ///< δ of each facet's points, in the unit of their area vectors: |c| counts as √(|c|² + δ²); empty: 0
 
   /// From the facets of a cloud. Throws GeometryError for a cloud without facets or with periodic directions.
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
@@ -29,6 +30,18 @@ struct SurfaceIntegral {
     quadrature = FacetQuadrature<D>(surface, body.reference, 2);
     force.resize(surface.facets.size());
     value.resize(surface.facets.size());
+    smallest.clear();
+  }
+
+  /// Lets δ be a share of what |c| is at the present positions.
+  void smooth(double share, std::span<const Vector4> x) {
+    for (Index f = 0; f < surface.facets.size(); ++f)
+      for (const auto& point : quadrature.points) smallest.push_back(share * surface.tangents(f, point.local, x).area_vector().norm());
+  }
+  /// √(|c|² + δ²) of the area vector c at point k of facet f.
+  [[nodiscard]] double size(Index f, std::size_t k, const Vector3& c) const {
+    const double delta = smallest.empty() ? 0.0 : smallest[f * quadrature.points.size() + k];
+    return std::sqrt(c.squaredNorm() + delta * delta);
   }
 
   /// Adds the forces per facet to the particles and returns the sum of the values.
@@ -55,10 +68,11 @@ double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4>
                   std::array<Vector3, FacetSurface<D>::corners>& gradient) {
   double area = 0.0;
   gradient.fill(Vector3::Zero());
-  for (const auto& point : s.quadrature.points) {
+  for (std::size_t p = 0; p < s.quadrature.points.size(); ++p) {
+    const auto& point = s.quadrature.points[p];
     const FacetTangents a = s.surface.tangents(f, point.local, x);
     const Vector3 c = a.area_vector();
-    const double length = c.norm();
+    const double length = s.size(f, p, c);
     area += point.weight * length;
     const Vector3 m = c / length;
     const Vector3 by_s = point.weight * a.t.cross(m), by_t = point.weight * m.cross(a.s);
@@ -73,7 +87,7 @@ double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4>
 }
 
 /// Calls emit(i, j, K) with the second derivative of `tension` × area in the nodes of every facet. With c = ∂x/∂s × ∂x/∂t,
-/// m = c/|c| and dc linear in dx: d²|c| = dc·(1 − m mᵀ) dc/|c| + m·d²c. In a meridian section ∂x/∂t is 2πr along e_z.
+/// |c| as SurfaceIntegral::size has it, m = c/|c| and dc linear in dx: d²|c| = dc·(1 − m mᵀ) dc/|c| + m·d²c. In a meridian section ∂x/∂t is 2πr along e_z.
 template <int D, class Emit>
 void add_area_stiffness(const SurfaceIntegral<D>& s, const ParticleFields& body, double tension, const Emit& emit) {
   const auto cross = [](const Vector3& v) {  // [v]ₓ w = v × w
@@ -85,10 +99,13 @@ void add_area_stiffness(const SurfaceIntegral<D>& s, const ParticleFields& body,
   for (Index f = 0; f < s.surface.facets.size(); ++f) {
     std::array<std::array<Tensor3, corners>, corners> K;
     for (auto& row : K) row.fill(Tensor3::Zero());
-    for (const auto& point : s.quadrature.points) {
+    for (std::size_t p = 0; p < s.quadrature.points.size(); ++p) {
+      const auto& point = s.quadrature.points[p];
       const FacetTangents a = s.surface.tangents(f, point.local, body.position);
-      const Vector3 c = a.area_vector(), m = c.normalized();
-      const Tensor3 across = (Tensor3::Identity() - m * m.transpose()) / c.norm(), turn = cross(m);
+      const Vector3 c = a.area_vector();
+      const double size = s.size(f, p, c);
+      const Vector3 m = c / size;
+      const Tensor3 across = (Tensor3::Identity() - m * m.transpose()) / size, turn = cross(m);
       const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
       std::array<Tensor3, corners> dc;
       const auto ring = s.surface.circumference_slopes(point.local);
@@ -116,10 +133,11 @@ template <int D>
 [[nodiscard]] double area_stiffness_rate(const SurfaceIntegral<D>& s, const ParticleFields& body, double tension) {
   std::vector<double> sum(body.mass.size(), 0.0);
   for (Index f = 0; f < s.surface.facets.size(); ++f)
-    for (const auto& point : s.quadrature.points) {
+    for (std::size_t p = 0; p < s.quadrature.points.size(); ++p) {
+      const auto& point = s.quadrature.points[p];
       const FacetTangents a = s.surface.tangents(f, point.local, body.position);
       const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
-      const double length = a.area_vector().norm();
+      const double length = s.size(f, p, a.area_vector());
       auto turn = s.surface.circumference_slopes(point.local);  // how the second tangent follows the nodes
       double all = 0.0, all_s = 0.0, all_t = 0.0;
       std::array<double, FacetSurface<D>::corners> g;
@@ -145,17 +163,25 @@ template <int D>
 /// are zero to round-off. A BoundaryTerm in 2 and 3 dimensions.
 struct SurfaceTension {
   double tension = 0.072e-3;                 ///< σ₀, N/m
+  /// Share of its first size below which a facet resists less and less to vanish, in [0, 1): |c| counts as √(|c|² + δ²). The force of a facet
+  /// that vanishes jumps, to the other side, and no implicit step finds its way there; a facet of its first size pulls by ½ share² less.
+  double smoothing = 0.0;
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()
 
-  /// Throws ParameterError unless tension >= 0.
-  void validate() const { require_non_negative("SurfaceTension.tension", tension, "N/m"); }
+  /// Throws ParameterError unless tension >= 0 and smoothing is in [0, 1).
+  void validate() const {
+    require_non_negative("SurfaceTension.tension", tension, "N/m");
+    if (!(smoothing >= 0.0 && smoothing < 1.0)) reject("SurfaceTension.smoothing", smoothing, "", "in [0, 1)");
+  }
 
-  /// Throws ParameterError unless tension >= 0, GeometryError for a cloud without facets or with periodic directions.
+  /// Throws ParameterError as validate(), GeometryError for a cloud without facets or with periodic directions.
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
     validate();
-    integral.emplace<D>().initialize(cloud, body);
+    auto& s = integral.emplace<D>();
+    s.initialize(cloud, body);
+    if (smoothing > 0.0) s.smooth(smoothing, body.reference);
   }
 
   /// Adds −σ₀ ∂A/∂x_I and returns σ₀ A.

@@ -3,4 +3,5 @@
 #include <tactoid/integrator/central_difference.hpp>
 #include <tactoid/integrator/implicit_dynamics.hpp>
 #include <tactoid/integrator/integrator.hpp>
+#include <tactoid/integrator/reference_update.hpp>
 #include <tactoid/integrator/static_newton.hpp>

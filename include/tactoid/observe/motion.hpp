@@ -45,7 +45,7 @@ struct Motion {
 template <std::size_t N, class S>
 [[nodiscard]] Motion motion(const S& simulation) {
   const auto& body = simulation.template body<N>();
-  Motion m = motion(body.masses(), body.table().particle_position, body.displacement, simulation.template velocity<N>());
+  Motion m = motion(body.masses(), body.reference(), body.displacement, simulation.template velocity<N>());
   if (body.table().axisymmetric) {
     m.momentum[0] = m.center_of_mass[0] = 0.0;
     m.angular_momentum.setZero();

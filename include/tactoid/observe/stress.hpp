@@ -39,7 +39,7 @@ template <class Body>
       weight[particle] += w;
     };
     if (table.value_based()) {
-      add(table.owner[q], table.volume[q]);
+      add(table.owner[q], body.point_volume(q));
     } else {
       for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
         add(table.entries[e].particle, table.volume[q] * std::max(0.0, table.point_values[e]));
@@ -54,9 +54,9 @@ template <class Body>
   return s;
 }
 
-/// Mean (weighted by reference volume) and largest value over the points of a region.
+/// Mean (weighted by the volumes of the table) and largest value over the points of a region.
 struct RegionStatistics {
-  double mean = 0.0;  ///< weighted by reference volume
+  double mean = 0.0;  ///< weighted by the volumes of the table
   double max = 0.0;   ///< 0 where no value is positive
 };
 /// Statistics of values at the quadrature points (stress_fields().point_effective_stress) over a region, its number

@@ -127,6 +127,42 @@ class AffineResidual {
 
 }  // namespace detail
 
+/// Fits boundary integrals b_I (m²) to the volumes of a table, by the least change that makes them integrals of affine fields,
+///   Σ_I b_I = 0,   Σ_I b_I ⊗ X_I = Σ_q V_q 1,
+/// without which the column conditions of make_consistent have no solution. `normals` are ∮ N_I n dA: where they vanish, inside, nothing
+/// changes; elsewhere by (α + A X_I) |normal_I|. Exact nodal volumes need no fit.
+template <int D>
+void fit_boundary(const PointTable& table, const std::vector<Point<D>>& normals, Field& boundary) {
+  constexpr int n = D + 1;
+  Vector3 middle = Vector3::Zero();
+  double total = 0.0, volume = 0.0, length = 0.0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    middle += normals[i].norm() * table.particle_position[i].template head<3>();
+    total += normals[i].norm();
+  }
+  middle /= total;
+  for (const Vector4& X : table.particle_position) length = std::max(length, (X.head<3>() - middle).norm());
+  for (const double V : table.volume) volume += V;
+  using Row = Eigen::Matrix<double, n, 1>;
+  const auto monomials = [&](std::size_t i) {
+    Row p;
+    p[0] = 1.0;
+    p.template tail<D>() = (table.particle_position[i].template head<3>() - middle).template head<D>() / length;
+    return p;
+  };
+  Eigen::Matrix<double, n, n> moments = Eigen::Matrix<double, n, n>::Zero();
+  Eigen::Matrix<double, n, D> defect = Eigen::Matrix<double, n, D>::Zero();
+  for (int k = 0; k < D; ++k) defect(k + 1, k) = volume / length;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Row p = monomials(i);
+    moments += normals[i].norm() * p * p.transpose();
+    defect -= p * boundary[i].template head<D>().transpose();
+  }
+  const Eigen::Matrix<double, n, D> change = moments.ldlt().solve(defect);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    boundary[i].template head<D>() += normals[i].norm() * change.transpose() * monomials(i);
+}
+
 /// Corrects the gradients of a value-based table so that rows and columns hold together:
 ///   Σ_I G_qI = 0,  Σ_I G_qI ⊗ X_I = 1   (linear exactness; must hold on entry and is kept), and
 ///   Σ_q V_q G_qI = b_I = ∮ N_I n dA      (integration by parts holds for the discrete integral),

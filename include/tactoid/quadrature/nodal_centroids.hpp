@@ -72,15 +72,34 @@ struct NodalCentroids {
   /// condition_limit, naming point and neighbours; ComputationError where the columns cannot be made consistent.
   template <Kernel K>
   [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel) const {
-    constexpr int D = K::dimension;
     validate();
-    std::vector<NodalCell<D>> cells = nodal_cells(cloud);
+    std::vector<NodalCell<K::dimension>> cells = nodal_cells(cloud);
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
       return std::pair(a.region, a.particle) < std::pair(b.region, b.particle);
     });
+    return table_of(cloud, kernel, cells, longest_edges(cloud), false);
+  }
+
+  /// The table of a cloud that has moved, with the points and the volumes that moved with it: `cells`, sorted by region. Only
+  /// particles and facets of the cloud are used; supports follow the particles (neighbor_spacings). Volumes that have been carried along are not quite
+  /// those of the cells, so the integrals over the boundary are fitted to them (fit_boundary). Throws what build() throws, and
+  /// ParameterError for a periodic cloud.
+  template <Kernel K>
+  [[nodiscard]] PointTable build_moved(const PointCloud<K::dimension>& cloud, const K& kernel,
+                                       const std::vector<NodalCell<K::dimension>>& cells) const {
+    if (!cloud.period.isZero()) throw ParameterError("NodalCentroids.build_moved: a periodic cloud keeps its reference.");
+    return table_of(cloud, kernel, cells, neighbor_spacings(cloud), true);
+  }
+
+ private:
+  template <Kernel K>
+  [[nodiscard]] PointTable table_of(const PointCloud<K::dimension>& cloud, const K& kernel, const std::vector<NodalCell<K::dimension>>& cells,
+                                    const std::vector<double>& spacing, bool moved) const {
+    constexpr int D = K::dimension;
     std::vector<Point<D>> centroids(cells.size());
     for (std::size_t q = 0; q < cells.size(); ++q) centroids[q] = cells[q].centroid;
-    const std::vector<double> supports = support_radii(kernel, cloud);
+    std::vector<double> supports = spacing;
+    for (double& support : supports) support *= kernel.support;
 
     PointTable table = empty_table(cloud);
     std::vector<double> weights;
@@ -116,17 +135,17 @@ struct NodalCentroids {
       Field boundary;
       for (const Point<D>& b : normals) boundary.push_back(pad(b));
       if (cloud.axisymmetric) take_off_hoops(table, boundary);
+      if (moved) fit_boundary(table, normals, boundary);
       make_consistent(table, weights, boundary, consistency_tolerance);
     }
     if (cloud.axisymmetric)
       for (std::size_t q = 0; q < table.points(); ++q)
         for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
           table.entries[e].gradient[2] = table.mass_shares[e] / table.position[q][0];
-    weigh_stabilization(table, cloud);
+    weigh_stabilization(table, cloud, spacing);
     return table;
   }
 
- private:
   /// What is left of ∮ N_I n dA for the gradients in a meridian section, where div(φ e_R) = ∂φ/∂R + φ/R:
   ///   Σ_q V_q G_qI = b_I − Σ_q V_q φ_I(X_q)/R_q e_R.
   /// An affine fit has nothing to add to it, since V_q/R_q is 2π times the part of the section that has its centroid in q.
@@ -138,8 +157,7 @@ struct NodalCentroids {
 
   /// Weights of the stabilisation; its pairs move to the front of each row.
   template <int D>
-  void weigh_stabilization(PointTable& table, const PointCloud<D>& cloud) const {
-    const std::vector<double> spacing = longest_edges(cloud);
+  void weigh_stabilization(PointTable& table, const PointCloud<D>& cloud, const std::vector<double>& spacing) const {
     table.stabilization_scale.assign(table.points(), 0.0);
     table.bond_offsets.assign(1, 0);
     std::vector<std::pair<TableEntry, double>> bonded, others;  // with their shares of the mass

@@ -21,6 +21,7 @@
 #include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
 #include <tactoid/quadrature/particle_values.hpp>
+#include <tactoid/simulation/earlier_configuration.hpp>
 #include <tactoid/simulation/region_laws.hpp>
 #include <tactoid/simulation/row_operations.hpp>
 
@@ -102,9 +103,6 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     displacement.assign(n, Vector4::Zero());
     velocity.assign(n, Vector4::Zero());
     force.assign(n, Vector4::Zero());
-    chunk_totals_.resize(table_.chunks.size());
-    chunk_stretch_.resize(table_.chunks.size());
-    chunk_failure_.assign(table_.chunks.size(), no_failure);
     if constexpr (has_director) {
       if constexpr (std::is_same_v<Initial, Field>) this->director = initial;
       else this->director = initial_director(cloud_, initial);
@@ -117,12 +115,11 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       points_of_particle_.assign(n, {});
       for (Index q = 0; q < table_.points(); ++q) points_of_particle_[table_.owner[q]].push_back(q);
     }
-    point_scale_ = wave_numbers();
-    for (Index q = 0; q < table_.points(); ++q) longest_row_ = std::max(longest_row_, table_.row(q).size());
+    follow_table();
   }
 
   // --- state -------------------------------------------------------------------------------------------------
-  Field displacement;   ///< unknowns u_I (values at the particles, or coefficients), m
+  Field displacement;   ///< unknowns u_I (values at the particles, or coefficients) since the first configuration, m
   Field velocity;       ///< their rates, `velocity_lag` of the last step before the present instant, m/s
   double velocity_lag = 0.5;  ///< ½ for leapfrog integrators, 0 where velocities belong to the end of the step
   Field force;          ///< forces conjugate to the unknowns, N
@@ -135,12 +132,16 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   [[nodiscard]] const PointCloud<dimension>& cloud() const { return cloud_; }            ///< the reference configuration
   [[nodiscard]] const KernelType& kernel() const { return kernel_; }                     ///< with its support
   [[nodiscard]] const QuadratureType& quadrature() const { return quadrature_; }         ///< with its stabilisation
-  [[nodiscard]] const PointTable& table() const { return table_; }                       ///< points, volumes and gradients, as the quadrature built them
+  [[nodiscard]] const PointTable& table() const { return table_; }                       ///< points, volumes and gradients, as the quadrature built them; on the updated reference, if there was one
   [[nodiscard]] const Director& director_law() const { return director_law_; }           ///< parameters of the director field
   [[nodiscard]] const std::vector<double>& masses() const { return masses_; }            ///< lumped, kg
   [[nodiscard]] const std::vector<double>& nodal_volumes() const { return volumes_; }    ///< reference, m³
   [[nodiscard]] const ParticleValues& particle_values() const { return particle_values_; }  ///< from unknowns to values at the particles
   [[nodiscard]] std::size_t size() const { return table_.particles; }                    ///< number of particles
+  /// Positions X_I of the first configuration, m.
+  [[nodiscard]] const Field& reference() const { return earlier_.empty() ? table_.particle_position : earlier_.position; }
+  /// Volume of a quadrature point in the first configuration, m³: what laws and densities are per.
+  [[nodiscard]] double point_volume(std::size_t q) const { return earlier_.empty() ? table_.volume[q] : earlier_.volume[q]; }
 
   /// Calls f(RegionLaw&, index of the region) for every region.
   template <class F>
@@ -153,6 +154,77 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     std::apply([&](const auto&... region) { Index r = 0; (f(region, r++), ...); }, laws_);
   }
 
+  // --- reference ---------------------------------------------------------------------------------------------
+  /// F₀ of point q, from the first configuration to that of the table; 1 where these are the same.
+  [[nodiscard]] Tensor3 earlier_gradient(std::size_t q) const { return earlier_.empty() ? Tensor3(Tensor3::Identity()) : earlier_.gradient[q]; }
+  /// Displacement of the particles from the first configuration to that of the table, m.
+  [[nodiscard]] Field displacement_of_table() const {
+    Field u(size(), Vector4::Zero());
+    if (!earlier_.empty())
+      for (std::size_t i = 0; i < u.size(); ++i) u[i] = table_.particle_position[i] - earlier_.position[i];
+    return u;
+  }
+  /// Displacement of the particles since the configuration of the table, m: its gradients are those of the table.
+  [[nodiscard]] Field displacement_in_table() const {
+    if (earlier_.empty()) return displacement;
+    Field u(size());
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = displacement[i] + earlier_.position[i] - table_.particle_position[i];
+    return u;
+  }
+
+  /// By how much lengths have changed since the configuration of the table: the largest stretch of a point, or the inverse of the
+  /// smallest, whichever is more; a bound that is exact where two stretches are equal. >= 1; infinite where a point is inverted.
+  [[nodiscard]] double distortion() const {
+    const Field u = displacement_in_table();
+    std::vector<double> largest(table_.chunks.size(), 0.0);
+    for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
+      for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
+        const Tensor3 F = Tensor3::Identity() + rows::gradient_at(table_, q, u);
+        const Inversion<double> inverse = invert(F);
+        const double most = std::max(largest_eigenvalue_bound<double>(F.transpose() * F),
+                                     largest_eigenvalue_bound<double>(inverse.inverse * inverse.inverse.transpose()));
+        largest[c] = std::max(largest[c], inverse.determinant > 0.0 ? most : std::numeric_limits<double>::infinity());
+      }
+    });
+    return std::sqrt(*std::max_element(largest.begin(), largest.end()));
+  }
+
+  /// Takes the present configuration as that on which neighbours, shape functions and points are defined. Particles, masses, velocities, the
+  /// positions of points between their particles, and the laws with all that they remember (stress, energy, histories) are
+  /// carried over as they are, so that mass and momentum are kept to the bit, and the elastic energy is. Only the stabilisation starts
+  /// anew: its energy is lost. `displacement` still counts from the first configuration. Forces are those of the table
+  /// before until they are evaluated again. Throws GeometryError or ComputationError where the quadrature cannot sample the present
+  /// configuration, and ParameterError for a periodic cloud; the body is then as it was.
+  void update_reference() {
+    static_assert(requires(const QuadratureType& q, const std::vector<NodalCell<dimension>>& cells) { { q.build_moved(cloud_, kernel_, cells) } -> std::same_as<PointTable>; },
+                  "The reference of a body can be updated if its quadrature has build_moved(cloud, kernel, cells), as NodalCentroids.");
+    const Field u = displacement_in_table();
+    EarlierConfiguration earlier{reference(), earlier_.volume, {}};
+    if (earlier.volume.empty()) earlier.volume = table_.volume;
+    PointCloud<dimension> cloud = cloud_;
+    for (std::size_t i = 0; i < u.size(); ++i) cloud.positions[i] = (table_.particle_position[i] + u[i]).template head<dimension>();
+    std::vector<NodalCell<dimension>> cells(table_.points());
+    for (std::size_t q = 0; q < cells.size(); ++q) {
+      const Index owner = table_.owner[q];
+      const Tensor3 F = Tensor3::Identity() + rows::gradient_at(table_, q, u);
+      const Vector3 offset = table_.position[q] - table_.particle_position[owner].template head<3>();
+      cells[q] = {owner, table_.region[q], 0.0, cloud.positions[owner] + (F * offset).template head<dimension>()};
+      if (table_.axisymmetric) cells[q].centroid[0] = table_.position[q][0] * F(2, 2);  // the stretch of the ring
+      if (!(determinant(F) > 0.0))
+        throw GeometryError(fmt::format("Body \"{}\": the reference cannot be updated, the point of particle {} is inverted.", name_, owner));
+      earlier.gradient.push_back(F * earlier_gradient(q));
+    }
+    for_each_region([&](const auto& region, Index) {
+      double stiffest = 0.0;
+      for (const auto& law : region.laws) stiffest = std::max(stiffest, shear_modulus(law));
+      if (stiffest == 0.0) smooth_volume_ratio(table_, region.begin, region.end, earlier);
+    });
+    for (std::size_t q = 0; q < cells.size(); ++q) cells[q].volume = earlier.volume[q] * determinant(earlier.gradient[q]);
+    PointTable table = quadrature_.build_moved(cloud, kernel_, cells);
+    earlier_ = std::move(earlier);
+    adopt(std::move(table));
+  }
+
   // --- forces ------------------------------------------------------------------------------------------------
   /// Adds the internal forces at the present state to `force` (and sets the director's flux and rates), and returns
   /// energies and powers. One pass over the table. With `advance` the histories advanced by `time_step` wait for
@@ -162,6 +234,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     bool rates = false;
     for_each_region([&](const auto& region, Index) { rates = rates || needs_rate(region); });
     if (rates) pack_motion();
+    if (!earlier_.empty()) relative_ = displacement_in_table();
     for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
       chunk_totals_[c] = {};
       chunk_stretch_[c] = 0.0;
@@ -221,6 +294,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         BlockGradients<Region::width> gradients;
         gather_block<true>(q, last, gradients);
         auto state = block_state<true, typename Region::Scalar>(q, last, gradients);
+        if (!earlier_.empty()) refer_to_first(state, earlier_gradients<typename Region::Scalar>(q, last));
         auto history = region.histories[region.block(q)];
         state.time_step = 0.0;
         const auto response = respond(region.law(q), state, history);
@@ -256,8 +330,9 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// What a step leaves to the next one. The reference positions tell bodies apart.
   template <class Archive>
   void state(Archive& archive) {
-    archive.expect("reference", table_.particle_position);
+    archive.expect("reference", reference());
     archive.expect("points", table_.points());
+    restore_reference(archive);
     archive.expect("pairs", table_.pairs());
     archive("displacement", displacement);
     archive("velocity", velocity);
@@ -279,11 +354,67 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     for_each_region([&](const auto& region, Index) {
       histories += 2 * region.histories.size() * sizeof(typename std::decay_t<decltype(region.histories)>::value_type);
     });
-    return histories + table_.memory() + size() * (7 * sizeof(Vector4) + 2 * sizeof(double)) + table_.points() * sizeof(double);
+    const std::size_t earlier = earlier_.gradient.size() * (sizeof(Tensor3) + sizeof(double)) + (earlier_.position.size() + relative_.size()) * sizeof(Vector4);
+    return histories + earlier + table_.memory() + size() * (7 * sizeof(Vector4) + 2 * sizeof(double)) + table_.points() * sizeof(double);
   }
 
  private:
   static constexpr std::size_t no_failure = std::numeric_limits<std::size_t>::max();
+
+  /// Everything that depends on the rows of the table and not on their values.
+  void follow_table() {
+    table_.mass_shares = std::vector<double>();  // an assignment of {} would keep the memory
+    chunk_totals_.resize(table_.chunks.size());
+    chunk_stretch_.assign(table_.chunks.size(), 0.0);
+    chunk_failure_.assign(table_.chunks.size(), no_failure);
+    point_scale_ = wave_numbers();
+    longest_row_ = 0;
+    for (Index q = 0; q < table_.points(); ++q) longest_row_ = std::max(longest_row_, table_.row(q).size());
+  }
+
+  /// Goes on with a table of the same points on another reference.
+  void adopt(PointTable table) {
+    table_ = std::move(table);
+    for_each_region([&](const auto& region, Index) { region.scale_stabilization(quadrature_, table_.stabilization_scale); });
+    follow_table();
+  }
+
+  /// The table is built again from where its particles and points were.
+  template <class Archive>
+  void restore_reference(Archive& archive) {
+    Field particles;
+    std::vector<Vector3> points;
+    std::vector<double> volumes;
+    EarlierConfiguration earlier = earlier_;
+    if (!earlier_.empty()) particles = table_.particle_position, points = table_.position, volumes = table_.volume;
+    if constexpr (Archive::restoring) particles.clear(), points.clear(), volumes.clear(), earlier = {};
+    archive("updated_reference", particles);
+    archive("updated_points", points);
+    archive("updated_volumes", volumes);
+    archive("earlier_volumes", earlier.volume);
+    archive("earlier_gradients", earlier.gradient);
+    if constexpr (Archive::restoring && requires(const std::vector<NodalCell<dimension>>& cells) { quadrature_.build_moved(cloud_, kernel_, cells); }) {
+      if (particles.empty() && !earlier_.empty())
+        throw ParameterError("Body \"" + name_ + "\": a state before an update of the reference cannot be restored after it; compose the simulation anew.");
+      if (particles.empty()) return;
+      earlier.position = reference();
+      PointCloud<dimension> cloud = cloud_;
+      std::vector<NodalCell<dimension>> cells(points.size());
+      for (std::size_t i = 0; i < particles.size(); ++i) cloud.positions[i] = particles[i].template head<dimension>();
+      for (std::size_t q = 0; q < cells.size(); ++q) cells[q] = {table_.owner[q], table_.region[q], volumes[q], points[q].template head<dimension>()};
+      earlier_ = std::move(earlier);
+      adopt(quadrature_.build_moved(cloud, kernel_, cells));
+    }
+  }
+
+  /// F₀ at the points of a block; lanes beyond its last point are at rest.
+  template <class T>
+  [[nodiscard]] Tensor<T> earlier_gradients(std::size_t begin, std::size_t end) const {
+    Tensor<T> F = Tensor<T>::Identity();
+    for (std::size_t q = begin; q < end; ++q)
+      for (int a = 0; a < 9; ++a) set_lane(F(a % 3, a / 3), static_cast<int>(q - begin), earlier_.gradient[q](a % 3, a / 3));
+    return F;
+  }
 
   template <class F>
   void visit(Index region, const F& f) {
@@ -335,7 +466,6 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         share(volumes_, table_.point_values, q, table_.volume[q]);
       }
     });
-    table_.mass_shares = std::vector<double>();  // an assignment of {} would keep the memory
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (!(masses_[i] > 0.0))
         throw GeometryError(fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.",
@@ -343,7 +473,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
                                         table_.particle_position[i][2], masses_[i]));
   }
 
-  /// k_q² = V_q Σ_I ρ |G_qI|² / M_I: squared wave number of the point alone, in the reference configuration.
+  /// k_q² = V_q Σ_I ρ |G_qI|² / M_I: squared wave number of the point alone, in the configuration of the table.
   std::vector<double> wave_numbers() const {
     std::vector<double> scale(table_.points(), 0.0);
     for_each_region([&](const auto& region, Index) {
@@ -352,7 +482,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         for (const TableEntry& entry : table_.row(q)) {
           const double g2 = entry.gradient[0] * entry.gradient[0] + entry.gradient[1] * entry.gradient[1] +
                             entry.gradient[2] * entry.gradient[2];
-          scale[q] += table_.volume[q] * region.law(q).density * g2 / masses_[entry.particle];
+          scale[q] += point_volume(q) * region.law(q).density * g2 / masses_[entry.particle];
         }
       });
     });
@@ -367,12 +497,14 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   template <bool Rate>
   [[nodiscard]] const rows::MotionOf<Rate>* motion() const {
     if constexpr (Rate) return motion_.data();
-    else return displacement.data();
+    else return earlier_.empty() ? displacement.data() : relative_.data();
   }
   void pack_motion() {
     motion_.resize(size());
+    const bool updated = !earlier_.empty();
     parallel_for(size(), [&](std::size_t i) {
       quad(motion_[i].displacement) = quad(displacement[i].data());
+      if (updated) quad(motion_[i].displacement) += quad(earlier_.position[i].data()) - quad(table_.particle_position[i].data());
       quad(motion_[i].velocity) = quad(velocity[i].data());
     });
   }
@@ -390,7 +522,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       const std::size_t l = q - begin;
       if constexpr (has_director) rows::gather(row, motion_.data(), director.data(), g.motion[l], g.rate[l], g.director[l]);
       else if constexpr (Rate) rows::gather(row, motion_.data(), g.motion[l], g.rate[l]);
-      else rows::gather(row, displacement.data(), g.motion[l]);
+      else rows::gather(row, motion<false>(), g.motion[l]);
       if constexpr (dimension == 2)
         if (table_.axisymmetric) {
           rows::turn_around_axis(g.motion[l]);
@@ -433,24 +565,34 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       PointState<T> state = block_state<Rate, T>(first, last, gradients);
       state.time_step = time_step;
       auto history = region.histories[region.block(first)];
-      const Response<T> response = respond(region.law(first), state, history);
+      Tensor<T> earlier;
+      const bool updated = !earlier_.empty();
+      if (updated) {
+        earlier = earlier_gradients<T>(first, last);
+        refer_to_first(state, earlier);
+      }
+      Response<T> response = respond(region.law(first), state, history);
+      if (updated) {
+        response.stress = (response.stress * earlier.transpose()).eval();
+        state = block_state<Rate, T>(first, last, gradients);
+      }
       const Inversion<T> F = invert(state.deformation_gradient);
       if (advance) region.advanced[region.block(first)] = history;
       const Tensor<T> inverse_C = F.inverse * F.inverse.transpose();
       const T bound = largest_eigenvalue_bound<T>(inverse_C);
 
-      double volume[W] = {};
-      for (std::size_t q = first; q < last; ++q) volume[q - first] = table_.volume[q];
+      double volume[W] = {}, volume_in_table[W] = {};
+      for (std::size_t q = first; q < last; ++q) volume[q - first] = point_volume(q), volume_in_table[q - first] = table_.volume[q];
       rows::Gradient flux[W], flux_h[W];
       rows::to_points(response.stress, volume, flux);
       if constexpr (has_director) {
         const Tensor<T> middle = state.deformation_gradient - state.deformation_rate * T(velocity_lag * time_step);
         const Tensor<T> A = Director::rate_operator(velocity_gradient(state.deformation_rate, inverse(middle)));
         const Tensor<T> diffusion = state.director_gradient * inverse_C * F.determinant;
-        rows::to_points(diffusion, volume, flux_h);
+        rows::to_points(diffusion, volume_in_table, flux_h);
         for (std::size_t q = first; q < last; ++q) {
           for (int a = 0; a < 9; ++a) point_rate_[q](a % 3, a / 3) = lane(A(a % 3, a / 3), int(q - first));
-          point_volume_ratio_[q] = lane(F.determinant, int(q - first));
+          point_volume_ratio_[q] = lane(F.determinant, int(q - first)) * (volume_in_table[q - first] / volume[q - first]);
         }
       }
       for (std::size_t q = first; q < last; ++q) {
@@ -524,7 +666,9 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::tuple<RegionLaw<Ms>...> laws_;
   std::vector<double> masses_, volumes_;
   std::vector<double> point_scale_;  // wave_numbers()
-  std::vector<rows::Motion> motion_;  // displacement and velocity, packed for the force loop
+  EarlierConfiguration earlier_;
+  std::vector<rows::Motion> motion_;  // displacement (since the table) and velocity, packed for the force loop
+  Field relative_;                    // displacement since the table, where the reference was updated
   std::size_t longest_row_ = 0;
   std::vector<BodyTotals> chunk_totals_;
   std::vector<double> chunk_stretch_;

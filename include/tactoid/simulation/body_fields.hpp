@@ -17,7 +17,7 @@ struct BodyFields {
   /// The reference configuration of a body, at rest.
   template <class Body>
   void prepare(const Body& body) {
-    reference = body.table().particle_position;
+    reference = body.reference();
     position = reference;
     velocity.assign(body.size(), Vector4::Zero());
     force.assign(body.size(), Vector4::Zero());

@@ -15,13 +15,15 @@ struct EnergyLedger {
   double dissipated = 0.0;     ///< by viscosity, damping, and the branches that have no energy
   double external_work = 0.0;  ///< of prescribed motion, active stress, and forces without an energy
 
+  double reference_updates = 0.0;  ///< lost with the stabilisation as references were updated (UpdatedReference)
+
   double initial = 0.0;       ///< total() at the start
   double largest_work = 0.0;  ///< largest |work| or energy exchanged so far: the scale of the error
 
   /// What is stored now.
   [[nodiscard]] double total() const { return kinetic + strain + stabilization + adhesion + surface; }
-  /// total + dissipated − external work − initial total: zero for exact integration in time.
-  [[nodiscard]] double defect() const { return total() + dissipated - external_work - initial; }
+  /// total + dissipated + lost by updates − external work − initial total: zero for exact integration in time.
+  [[nodiscard]] double defect() const { return total() + dissipated + reference_updates - external_work - initial; }
   /// |defect| over the largest work done so far.
   [[nodiscard]] double error() const { return largest_work > 0.0 ? std::abs(defect()) / largest_work : 0.0; }
 
@@ -35,6 +37,7 @@ struct EnergyLedger {
     archive("surface", surface);
     archive("dissipated", dissipated);
     archive("external_work", external_work);
+    archive("reference_updates", reference_updates);
     archive("initial", initial);
     archive("largest_work", largest_work);
   }

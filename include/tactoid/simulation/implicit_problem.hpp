@@ -76,7 +76,7 @@ class SimulationProblem {
   [[nodiscard]] Eigen::VectorXd scale() const {
     Eigen::VectorXd scale = Eigen::VectorXd::Ones(size_);
     simulation_.for_each_body([&](const auto& body, std::size_t b) {
-      const Field& X = body.table().particle_position;
+      const Field& X = body.reference();
       Vector4 least = X.front(), most = X.front();
       for (const Vector4& x : X) least = least.cwiseMin(x), most = most.cwiseMax(x);
       scale.segment(begin_[b], static_cast<Eigen::Index>(dimension * body.size())).setConstant((most - least).norm());
@@ -200,6 +200,7 @@ class SimulationProblem {
   template <class Body>
   void add_director(const Body& body, std::size_t b, double rate_factor, std::vector<Eigen::Triplet<double>>& entries) const {
     const PointTable& table = body.table();
+    const Field displacement = body.displacement_in_table();
     const auto& law = body.director_law();
     // Around an axis a component along it has no part (h_R, h_θ have one) that turns with the angle.
     StiffnessMatrix L = detail::stiffness_pattern<1>(table), along_axis;
@@ -207,7 +208,7 @@ class SimulationProblem {
     for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
       for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
         const auto row = detail::pairs_of(table, q);
-        const Tensor3 F = Tensor3::Identity() + detail::gradient_at(table, q, body.displacement);
+        const Tensor3 F = Tensor3::Identity() + rows::gradient_at(table, q, displacement);
         const Tensor3 flux = table.volume[q] * F.determinant() * (F.transpose() * F).inverse();
         detail::for_each_block<1>(L, row, [&](std::size_t a, std::size_t c, int at) {
           const Eigen::Map<const Vector3> Ga(row[a].gradient), Gc(row[c].gradient);

@@ -80,6 +80,12 @@ struct RegionLaw {
     histories.resize((end - begin + width - 1) / static_cast<std::size_t>(width));
     advanced = histories;
     stabilization = quadrature.stabilization(softest);
+    scale_stabilization(quadrature, scale);
+  }
+
+  /// Lets the stabilisation's factors of a table follow a graded law, as prepare() does.
+  template <class Q>
+  void scale_stabilization([[maybe_unused]] const Q& quadrature, [[maybe_unused]] std::vector<double>& scale) const {
     if constexpr (graded) {
       if (scale.empty() || !(stabilization.modulus > 0.0)) return;
       for (std::size_t q = begin; q < end; ++q)

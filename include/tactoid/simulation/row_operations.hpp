@@ -69,6 +69,17 @@ inline void gather(std::span<const TableEntry> row, const Vector4* f, Gradient& 
   for (int K = 0; K < 3; ++K) df.column[K] = even.column[K] + odd.column[K];
 }
 
+/// ∂f/∂X of a field at a point of the table, the parts around an axis included; outside of the hot path.
+[[nodiscard]] inline Tensor3 gradient_at(const PointTable& table, std::size_t q, const Field& f) {
+  Gradient df;
+  gather(table.row(q), f.data(), df);
+  if (table.axisymmetric) turn_around_axis(df);
+  Tensor3 gradient;
+  for (int K = 0; K < 3; ++K)
+    for (int i = 0; i < 3; ++i) gradient(i, K) = df.column[K][i];
+  return gradient;
+}
+
 /// The gradients of displacement and velocity in one sweep.
 inline void gather(std::span<const TableEntry> row, const Motion* motion, Gradient& du, Gradient& dv) {
   Gradient u, v;

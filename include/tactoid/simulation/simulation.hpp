@@ -20,6 +20,7 @@
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/core/state.hpp>
 #include <tactoid/integrator/integrator.hpp>
+#include <tactoid/integrator/reference_update.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/body_fields.hpp>
 #include <tactoid/simulation/contact_anchoring.hpp>
@@ -71,7 +72,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         if constexpr (is_motion<decltype(on)>)
           if (std::decay_t<decltype(on)>::body == b) motions.push_back(on.term);
       });
-      essential_[b] = EssentialConditions(with_axis_condition(body.cloud(), std::move(motions)), body.particle_values(), body.table().particle_position, body.masses());
+      essential_[b] = EssentialConditions(with_axis_condition(body.cloud(), std::move(motions)), body.particle_values(), fields_[b].reference, body.masses());
       essential_[b].impose(0.0, 0.0, 0.0, body.displacement, body.velocity);
       fields_[b].refresh(body, 0.0);
     });
@@ -221,6 +222,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       archive.part(name, body);
       archive.part(name + "/at_particles", fields_[b]);
       archive.part(name + "/conditions", essential_[b]);
+      archive.part(name + "/stable_step", stable_[b]);
       archive(name + "/term_rate", term_rates_[b]);
     });
     for_each_contact([&](auto& between, std::size_t n) { archive.part("contact_" + std::to_string(n), between.contact); });
@@ -274,6 +276,36 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
 
   /// Forces and energies at the present state; histories and directors are advanced by the last step.
   void evaluate() { evaluate(false); }
+
+  /// Updates the reference of every body that is distorted by more than `distortion` (Body::distortion) and evaluates the forces anew.
+  /// Nothing moves, and time stands still. Bodies need a value-based quadrature.
+  ReferenceUpdate update_references(double distortion) {
+    ReferenceUpdate done;
+    for_each_body([&](auto& body, std::size_t b) {
+      const double present = body.distortion();
+      done.distortion = std::max(done.distortion, present);
+      if (!(present > distortion)) return;
+      try {
+        body.update_reference();
+      } catch (const GeometryError& error) {
+        done.refused = error.what();
+        return;
+      } catch (const ComputationError& error) {
+        done.refused = error.what();
+        return;
+      }
+      stable_[b].calibrate(body);
+      ++done.updates;
+    });
+    if (done.updates == 0) return done;
+    const double before = ledger_.total();
+    const StepEnergies energies = forces(evaluated_, time_, 0.0);
+    for_each_body([&](const auto& body, std::size_t) { check(body); });
+    take_stored(energies);
+    done.lost_energy = before - ledger_.total();
+    ledger_.reference_updates += done.lost_energy;
+    return done;
+  }
 
   // --- what an implicit integrator uses ----------------------------------------------------------------------
   /// The simulation as equations for the state at the end of a step; for the length of a step.
@@ -370,13 +402,18 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     drifted_ = false;
   }
 
-  /// Enters a step in the ledger.
-  void book(const StepEnergies& energies, bool from_rest) {
+  /// Enters what is stored now in the ledger.
+  void take_stored(const StepEnergies& energies) {
     ledger_.kinetic = energies.kinetic;
     ledger_.strain = energies.internal.strain_energy;
     ledger_.stabilization = energies.internal.stabilization_energy;
     ledger_.adhesion = energies.contact.potential;
     ledger_.surface = energies.boundary.potential;
+  }
+
+  /// Enters a step in the ledger.
+  void book(const StepEnergies& energies, bool from_rest) {
+    take_stored(energies);
     // The terms' powers are those at the ends of the step; the laws' too, unless velocities are those of its middle.
     double external_power = energies.contact.external_power + energies.boundary.external_power;
     double dissipated_power = energies.contact.dissipated_power + energies.boundary.dissipated_power;

@@ -26,7 +26,7 @@ class StableStep {
   template <class Body>
   void calibrate(Body& body) {
     const Field present = body.displacement;
-    body.displacement.assign(body.size(), Vector4::Zero());
+    body.displacement = body.displacement_of_table();
     const std::vector<double> reference = wave_numbers(body);
     ratio_.assign(reference.size(), 1.0);
     body.for_each_region([&](const auto& region, Index r) {
@@ -45,6 +45,14 @@ class StableStep {
     // Velocities are tried at the size that the tried displacements have at the highest frequency.
     if (viscous > 0.0 && frequency_squared > 0.0)
       viscous_ = largest_eigenvalue(body, body.velocity, std::sqrt(frequency_squared)) / viscous;
+  }
+
+  /// For checkpoints: what was measured, at the configuration that is the reference.
+  template <class Archive>
+  void state(Archive& archive) {
+    archive("ratio", ratio_);
+    archive("elastic", elastic_);
+    archive("viscous", viscous_);
   }
 
   /// Largest stable step at the present state; `term_rate` is ω² of what acts on the body's particles, 1/s².
@@ -120,7 +128,7 @@ class StableStep {
     return 1.02 * std::max(largest, 0.0);
   }
 
-  /// Largest eigenvalue of M⁻¹ Σ_q V_q ρ G_q G_qᵀ over the points of region r, in the reference configuration; 1/m².
+  /// Largest eigenvalue of M⁻¹ Σ_q V_q ρ G_q G_qᵀ over the points of region r, in the configuration of the table; 1/m².
   template <class Body, class Region>
   [[nodiscard]] static double largest_wave_number(const Body& body, const Region& region, Index r) {
     const PointTable& table = body.table();
@@ -133,7 +141,7 @@ class StableStep {
           Vector3 gradient = Vector3::Zero();
           for (const TableEntry& entry : table.row(q))
             gradient += mode[entry.particle] * Eigen::Map<const Vector3>(entry.gradient);
-          gradient *= table.volume[q] * region.law(q).density;
+          gradient *= body.point_volume(q) * region.law(q).density;
           for (const TableEntry& entry : table.row(q))
             result[entry.particle] += gradient.dot(Eigen::Map<const Vector3>(entry.gradient));
         }

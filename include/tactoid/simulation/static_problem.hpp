@@ -36,9 +36,9 @@ class StaticProblem {
       : body_(body), terms_(std::move(terms)...) {
     static_assert((BoundaryTerm<Terms, dimension> && ...), "A StaticProblem takes BoundaryTerms after its conditions.");
     std::fill(body_.velocity.begin(), body_.velocity.end(), Vector4::Zero());
-    essential_ = EssentialConditions(with_axis_condition(body_.cloud(), std::move(motions)), body_.particle_values(), body_.table().particle_position,
-                                     body_.masses());
     fields_.prepare(body_);
+    essential_ = EssentialConditions(with_axis_condition(body_.cloud(), std::move(motions)), body_.particle_values(), fields_.reference,
+                                     body_.masses());
     fields_.refresh(body_, 0.0);
     std::apply([&](auto&... term) { (term.initialize(body_.cloud(), fields_.view()), ...); }, terms_);
     Vector4 least = fields_.reference.front(), most = least;

@@ -54,15 +54,14 @@ template <int D>
   return is_padding(table, q, table.offsets[q + 1] - 1) ? row.first(row.size() - 1) : row;
 }
 
-/// ∂f/∂X of a field at a point.
-[[nodiscard]] inline Tensor3 gradient_at(const PointTable& table, std::size_t q, const Field& f) {
-  rows::Gradient df;
-  rows::gather(table.row(q), f.data(), df);
-  if (table.axisymmetric) rows::turn_around_axis(df);
-  Tensor3 gradient;
-  for (int K = 0; K < 3; ++K)
-    for (int i = 0; i < 3; ++i) gradient(i, K) = df.column[K][i];
-  return gradient;
+/// The gradient of a pair with respect to the configuration before the one of the table; the third one of a meridian section, φ/R, stays apart.
+[[nodiscard]] inline Vector3 referred(const PointTable& table, const TableEntry& entry, const Tensor3& earlier) {
+  const Eigen::Map<const Vector3> G(entry.gradient);
+  if (!table.axisymmetric) return earlier.transpose() * G;
+  Vector3 g = Vector3::Zero();
+  g.head<2>() = earlier.topLeftCorner<2, 2>().transpose() * G.head<2>();
+  g[2] = earlier(2, 2) * G[2];
+  return g;
 }
 
 /// Adds the first N × N of a block to the entries of a matrix, whose first place is (row, column).
@@ -145,6 +144,7 @@ template <class Body>
 [[nodiscard]] StiffnessMatrix assemble_stiffness(const Body& body, const StepTangent& step = {}) {
   constexpr int D = Body::dimension;
   const PointTable& table = body.table();
+  const Field displacement = body.displacement_in_table();
   StiffnessMatrix K = detail::stiffness_pattern<D>(table);
   body.for_each_region([&](const auto& region, Index r) {
     using Law = typename std::decay_t<decltype(region)>::Law;
@@ -153,14 +153,19 @@ template <class Body>
       if (chunk.region != r) return;
       for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
         const auto row = detail::pairs_of(table, q);
+        const double volume = body.point_volume(q);
         PointState<double> state;
         state.time_step = step.time_step;
-        state.deformation_gradient += detail::gradient_at(table, q, body.displacement);
-        if (step.rate_factor > 0.0) state.deformation_rate = detail::gradient_at(table, q, body.velocity);
+        state.deformation_gradient += rows::gradient_at(table, q, displacement);
+        if (step.rate_factor > 0.0) state.deformation_rate = rows::gradient_at(table, q, body.velocity);
         if constexpr (Body::has_director) {
-          state.director_gradient = detail::gradient_at(table, q, body.director);
+          state.director_gradient = rows::gradient_at(table, q, body.director);
           state.director = body.director[table.owner[q]].template head<3>();
         }
+        std::vector<Vector3> G;  // with respect to the configuration that the law knows
+        const Tensor3 earlier = body.earlier_gradient(q);
+        refer_to_first(state, earlier);
+        for (const TableEntry& entry : row) G.push_back(detail::referred(table, entry, earlier));
         const int l = static_cast<int>((q - region.begin) % static_cast<std::size_t>(region.width));
         const auto history = detail::history_at_lane<Law, typename std::decay_t<decltype(region)>::Scalar>(
             region.histories[region.block(q)], l);
@@ -169,8 +174,8 @@ template <class Body>
         for (std::size_t a = 0; a < row.size(); ++a)
           for (int i = 0; i < D; ++i) {
             left[a].row(i).setZero();
-            for (int k = 0; k < D; ++k) left[a].row(i) += table.volume[q] * row[a].gradient[k] * A.row(3 * i + k);
-            if (table.axisymmetric && i == 0) left[a].row(i) += table.volume[q] * row[a].gradient[2] * A.row(8);
+            for (int k = 0; k < D; ++k) left[a].row(i) += volume * G[a][k] * A.row(3 * i + k);
+            if (table.axisymmetric && i == 0) left[a].row(i) += volume * G[a][2] * A.row(8);
           }
         Eigen::MatrixXd hold;
         if (modulus > 0.0)
@@ -182,8 +187,8 @@ template <class Body>
                 K.valuePtr() + K.outerIndexPtr()[static_cast<Eigen::Index>(D * row[b].particle) + j] + place;
             for (int i = 0; i < D; ++i) {
               double k = 0.0;
-              for (int m = 0; m < D; ++m) k += left[a](i, 3 * j + m) * row[b].gradient[m];
-              if (table.axisymmetric && j == 0) k += left[a](i, 8) * row[b].gradient[2];
+              for (int m = 0; m < D; ++m) k += left[a](i, 3 * j + m) * G[b][m];
+              if (table.axisymmetric && j == 0) k += left[a](i, 8) * G[b][2];
               column[i] += k;
             }
             if (modulus > 0.0) column[j] += hold(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
