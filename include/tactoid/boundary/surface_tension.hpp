@@ -144,6 +144,7 @@ template <int D>
 /// traction −σ₀ κ n of Zeng and Li, Soft Matter 2012, 8, 5765, eqn (17). Exactly conservative: net force (of rings: along the axis) and torque
 /// are zero to round-off. A BoundaryTerm in 2 and 3 dimensions.
 struct SurfaceTension {
+  static constexpr Reads reads = Reads::facets;  ///< the surface
   double tension = 0.072e-3;                 ///< σ₀, N/m
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()
 

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <mpi.h>
+
+#include <tactoid/core/ranks.hpp>
+#include <tactoid/core/version.hpp>
+#include <tactoid/mpi/chunk_graph.hpp>
+#include <tactoid/mpi/divided_bodies.hpp>
+#include <tactoid/mpi/parcels.hpp>
+
+namespace tactoid::mpi {
+
+/// How a Session works.
+struct SessionOptions {
+  Partitioner partitioner = partition_by_metis;  ///< which rank computes which chunks of points
+  double patience = 10.0;                        ///< s: how long a rank that fails waits for the others to fail alike
+};
+
+/// Makes the processes that mpirun started compute each simulation together, as long as it lives:
+///
+///   int main(int argc, char** argv) {
+///     tactoid::mpi::Session session(argc, argv);
+///     …                                            // the same program, on every rank
+///   }
+///
+/// One per program. Started without mpirun, the program is the only rank, and everything is as without a session.
+class Session final : public Ranks {
+ public:
+  /// Starts MPI. Collective; throws ParameterError on all ranks where these are of different versions of the library.
+  Session(int& argc, char**& argv, SessionOptions options = {}) : options_(std::move(options)) {
+    if (Ranks::current != nullptr) throw ParameterError("A program has one mpi::Session at a time.");
+    int provided = 0;
+    succeeded(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided));
+    succeeded(MPI_Comm_dup(MPI_COMM_WORLD, &ranks_));
+    succeeded(MPI_Comm_dup(MPI_COMM_WORLD, &failures_));
+    MPI_Comm_rank(ranks_, &rank_);
+    MPI_Comm_size(ranks_, &size_);
+    Ranks::current = this;
+    try {
+      require_same("version of Tactoid", version);
+    } catch (...) {
+      end();
+      throw;
+    }
+  }
+  /// Ends MPI, when all ranks have come here; a rank that waits in vain, because it failed and the program went on, ends them all.
+  ~Session() override { end(); }
+
+  [[nodiscard]] int rank() const override { return rank_; }
+  [[nodiscard]] int size() const override { return size_; }
+  [[nodiscard]] long largest(long number) override {
+    succeeded(MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_LONG, MPI_MAX, ranks_));
+    return number;
+  }
+  [[nodiscard]] std::string text_of(int of, const std::string& text) override {
+    std::string result = text;
+    long length = static_cast<long>(text.size());
+    succeeded(MPI_Bcast(&length, 1, MPI_LONG, of, ranks_));
+    result.resize(static_cast<std::size_t>(length));
+    succeeded(MPI_Bcast(result.data(), as_count(result.size()), MPI_CHAR, of, ranks_));
+    return result;
+  }
+  [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) override {
+    return std::make_unique<DividedBodies>(*this, ranks_, std::move(bodies), options_.partitioner);
+  }
+  [[nodiscard]] bool reports_failure(std::string_view text, int status) override {
+    if (all_are_here()) return rank_ == 0;
+    std::fflush(stdout);
+    std::fprintf(stderr, "rank %d: %.*s\n", rank_, static_cast<int>(text.size()), text.data());
+    std::fflush(stderr);
+    MPI_Abort(MPI_COMM_WORLD, status);
+    std::abort();
+  }
+
+ private:
+  /// Whether all ranks call this within options_.patience.
+  [[nodiscard]] bool all_are_here() {
+    MPI_Request request = MPI_REQUEST_NULL;
+    if (MPI_Ibarrier(failures_, &request) != MPI_SUCCESS) return false;
+    const auto start = std::chrono::steady_clock::now();
+    int here = 0;
+    while (MPI_Test(&request, &here, MPI_STATUS_IGNORE) == MPI_SUCCESS && !here) {
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > options_.patience) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return here != 0;
+  }
+  void end() {
+    Ranks::current = nullptr;
+    MPI_Comm_free(&ranks_);
+    MPI_Comm_free(&failures_);
+    MPI_Finalize();
+  }
+
+  SessionOptions options_;
+  MPI_Comm ranks_ = MPI_COMM_NULL, failures_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace tactoid::mpi
