@@ -41,7 +41,9 @@ class OwnedValues {
     own.reserve(static_cast<std::size_t>(counts[me]) + 1);
     for (std::size_t k = first_[me]; k < first_[me + 1]; ++k)
       for (std::size_t j = 0; j < width; ++j) own.push_back(values[items_[k] * width + j]);
-    succeeded(MPI_Allgatherv(own.data(), counts[me], MPI_DOUBLE, all.data(), counts.data(), places.data(), MPI_DOUBLE, ranks_));
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Iallgatherv(own.data(), counts[me], MPI_DOUBLE, all.data(), counts.data(), places.data(), MPI_DOUBLE, ranks_, &request));
+    wait(request);
     for (std::size_t k = 0; k < items_.size(); ++k) std::copy_n(all.data() + k * width, width, values.data() + items_[k] * width);
   }
 
@@ -95,13 +97,16 @@ class SumInOrder {
   /// Σ terms over all items, each rank giving those that it owns. Collective.
   [[nodiscard]] double operator()(std::span<const double> terms) {
     for (std::size_t k = 0; k < sent_.size(); ++k) out_[k] = terms[sent_[k]];
-    succeeded(MPI_Alltoallv(out_.data(), sent_counts_.data(), sent_places_.data(), MPI_DOUBLE, in_.data(), received_counts_.data(), received_places_.data(), MPI_DOUBLE,
-                            ranks_));
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Ialltoallv(out_.data(), sent_counts_.data(), sent_places_.data(), MPI_DOUBLE, in_.data(), received_counts_.data(), received_places_.data(), MPI_DOUBLE,
+                             ranks_, &request));
+    wait(request);
     std::array<double, parts> sums{};
     for (std::size_t p = 0, k = 0; p < parts; ++p)
       for (; k < end_of_part_[p]; ++k) sums[p] += in_[place_[k]];
     // Adding zeros is exact.
-    succeeded(MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(parts), MPI_DOUBLE, MPI_SUM, ranks_));
+    succeeded(MPI_Iallreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(parts), MPI_DOUBLE, MPI_SUM, ranks_, &request));
+    wait(request);
     double total = 0.0;
     for (const double sum : sums) total += sum;
     return total;

@@ -3,9 +3,11 @@
 // Needs MPI: link tactoid::mpi. Neither <tactoid/tactoid.hpp> nor a header of another room includes this room.
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -23,6 +25,15 @@ inline void succeeded(int result) {
   int length = 0;
   MPI_Error_string(result, text, &length);
   throw ComputationError("MPI failed: " + std::string(text, static_cast<std::size_t>(length)) + ".");
+}
+
+/// Waits for a request: at first awake, then with short sleeps, so that a rank that waits long leaves its processor to others.
+inline void wait(MPI_Request& request) {
+  for (int tries = 0, done = 0;; ++tries) {
+    succeeded(MPI_Test(&request, &done, MPI_STATUS_IGNORE));
+    if (done) return;
+    if (tries >= 500) std::this_thread::sleep_for(std::chrono::microseconds(20));
+  }
 }
 
 /// A number of items as MPI takes it. Throws ComputationError above 2³¹ − 1.
@@ -102,7 +113,7 @@ class ParcelsToAll {
   /// Waits, and sets the fields.
   void end() {
     if (empty_) return;
-    succeeded(MPI_Wait(&request_, MPI_STATUS_IGNORE));
+    wait(request_);
     for (std::size_t r = 0; r < parcels_.size(); ++r)
       if (static_cast<int>(r) != rank_) parcels_[r].unpack(all_.buffer.data() + all_.places[r]);
   }
@@ -148,7 +159,7 @@ class ParcelsToNeighbors {
   }
   /// Waits, and sets the fields.
   void end() {
-    succeeded(MPI_Wait(&request_, MPI_STATUS_IGNORE));
+    wait(request_);
     for (std::size_t n = 0; n < in_.size(); ++n) in_[n].unpack(received_.buffer.data() + received_.places[n]);
   }
   /// Numbers that this rank sends in every step.

@@ -60,15 +60,20 @@ class Session final : public Ranks {
   [[nodiscard]] int rank() const override { return rank_; }
   [[nodiscard]] int size() const override { return size_; }
   [[nodiscard]] long largest(long number) override {
-    succeeded(MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_LONG, MPI_MAX, ranks_));
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_LONG, MPI_MAX, ranks_, &request));
+    wait(request);
     return number;
   }
   [[nodiscard]] std::string text_of(int of, const std::string& text) override {
     std::string result = text;
     long length = static_cast<long>(text.size());
-    succeeded(MPI_Bcast(&length, 1, MPI_LONG, of, ranks_));
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Ibcast(&length, 1, MPI_LONG, of, ranks_, &request));
+    wait(request);
     result.resize(static_cast<std::size_t>(length));
-    succeeded(MPI_Bcast(result.data(), as_count(result.size()), MPI_CHAR, of, ranks_));
+    succeeded(MPI_Ibcast(result.data(), as_count(result.size()), MPI_CHAR, of, ranks_, &request));
+    wait(request);
     return result;
   }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) override {
