@@ -231,8 +231,6 @@ TEST_CASE("The residual of an implicit step") {
       rate = (z - start) / dt;
       CHECK(problem.residual(z, rate, rate / dt, dt, R));
       writer("residual_" + std::to_string(step), std::vector<double>(R.data(), R.data() + R.size()));
-      const StiffnessMatrix K = problem.tangent(1.0 / dt, 0.0, dt);
-      writer("tangent_" + std::to_string(step), std::vector<double>(K.valuePtr(), K.valuePtr() + K.nonZeros()));
       problem.accept(z, rate, rate, dt);
     }
     for (auto& [name, array] : save_state(simulation)) state[name] = array;

@@ -77,7 +77,8 @@ struct Parcel {
 
 /// Places of parcels in one buffer.
 struct Layout {
-  std::vector<int> counts, places;  ///< per parcel: numbers in it, and where they begin
+  std::vector<int> counts;          ///< per parcel: numbers in it
+  std::vector<int> places;          ///< per parcel: where they begin
   std::vector<double> buffer;       ///< of all
 
   Layout() = default;
