@@ -116,6 +116,7 @@ constexpr std::size_t checkpoint_head_size = 512;  // a user block of HDF5
 /// groups and data sets, those of bodies with their units; `program`, `parameters`, `version` are attributes. The file appears
 /// whole or not at all; a former one at this path stays until then. Throws FileError.
 inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  if (!is_first_rank()) return;  // a state that was saved is whole on all of several processes
   using detail::Hdf5, detail::hdf5_succeeded;
   const detail::QuietHdf5 quiet;
   std::string image;
