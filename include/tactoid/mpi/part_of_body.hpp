@@ -50,6 +50,8 @@ class PartOfBody final : public BodyShare {
       needed[table.owner[q]] = 1;
       for (const TableEntry& entry : row) needed[entry.particle] = 1;
     }
+    for (Index i = 0; i < table.particles; ++i)
+      if (needed[i] || particle_owner[i] == rank || body.known_to_all[i]) local.push_back(i);
     point_values_ = OwnedValues(ranks, point_owner);
   }
 

@@ -155,12 +155,19 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     std::apply([&](const auto&... region) { Index r = 0; (f(region, r++), ...); }, laws_);
   }
 
+  /// Calls f(i) for the particles that this process computes: all, unless others share the body. As parallel_for.
+  template <class F>
+  void for_each_particle(const F& f) const {
+    const Index* const local = share_ ? share_->local.data() : nullptr;
+    parallel_for(local ? share_->local.size() : size(), [&](std::size_t k) { f(local ? local[k] : k); });
+  }
+
   // --- forces ------------------------------------------------------------------------------------------------
   /// Adds the internal forces at the present state to `force` (and sets the director's flux and rates), and returns
   /// energies and powers. One pass over the table. With `advance` the histories advanced by `time_step` wait for
   /// accept_histories(): a step that breaks down has not touched them.
   BodyTotals add_internal_forces(double time_step, bool advance) {
-    if constexpr (has_director) std::fill(director_flux.begin(), director_flux.end(), Vector4::Zero());
+    if constexpr (has_director) for_each_particle([&](std::size_t i) { director_flux[i].setZero(); });
     bool rates = false;
     for_each_region([&](const auto& region, Index) { rates = rates || needs_rate(region); });
     if (rates) pack_motion();
@@ -412,7 +419,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   }
   void pack_motion() {
     motion_.resize(size());
-    parallel_for(size(), [&](std::size_t i) {
+    for_each_particle([&](std::size_t i) {
       quad(motion_[i].displacement) = quad(displacement[i].data());
       quad(motion_[i].velocity) = quad(velocity[i].data());
     });

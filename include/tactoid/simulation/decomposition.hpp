@@ -25,6 +25,7 @@ class BodyShare {
 
   std::vector<char> own_chunk;  ///< per chunk of the table: 1 where it belongs to this rank
   std::vector<char> evaluated;  ///< per point: 1 where this rank evaluates the row
+  std::vector<Index> local;     ///< particles that this rank owns, that its rows touch, or that are known to all; ascending
 
   /// Empties the rows that are not evaluated; does nothing where all rows must stay.
   virtual void drop_rows(PointTable& table) const = 0;

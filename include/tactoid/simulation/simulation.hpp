@@ -264,7 +264,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void kick(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
       previous_velocity_[b].resize(body.size());
-      parallel_for(body.size(), [&](std::size_t i) {
+      body.for_each_particle([&](std::size_t i) {
         previous_velocity_[b][i] = body.velocity[i];
         body.velocity[i] += (time_step / body.masses()[i]) * body.force[i];
       });
@@ -276,7 +276,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void drift(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
       previous_[b].resize(body.size());
-      parallel_for(body.size(), [&](std::size_t i) {
+      body.for_each_particle([&](std::size_t i) {
         previous_[b][i] = body.displacement[i];
         body.displacement[i] += time_step * body.velocity[i];
       });
@@ -285,7 +285,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       if (essential_[b].empty()) return;
       ledger_.external_work += essential_[b].impose(time_ + time_step, time_step, last_step_, body.displacement, body.velocity);
-      for (std::size_t i = 0; i < body.size(); ++i) body.force[i] += essential_[b].forces()[i];
+      body.for_each_particle([&](std::size_t i) { body.force[i] += essential_[b].forces()[i]; });
     });
     moved_ = true;
     step_before_ = last_step_;
@@ -365,10 +365,11 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
     end_exchange();
     for_each_body([&](auto& body, std::size_t b) {
-      parallel_for(body.size(), [&](std::size_t i) { body.force[i].setZero(); });
-      body.particle_values().distribute(fields_[b].force, body.force);
+      body.for_each_particle([&](std::size_t i) { body.force[i].setZero(); });
+      if (body.particle_values().identity()) body.for_each_particle([&](std::size_t i) { body.force[i] += fields_[b].force[i]; });
+      else body.particle_values().distribute(fields_[b].force, body.force);
       energies.internal += body.add_internal_forces(time_step, true);
-      energies.kinetic += sum_over_particles(b, body.size(), [&](std::size_t i) {
+      energies.kinetic += sum_over_particles(b, body, [&](std::size_t i) {
         return 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
       });
     });
@@ -456,7 +457,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   static void advance_director(Body& body, double time_step) {
     if (time_step <= 0.0) return;
     const auto& law = body.director_law();
-    parallel_for(body.size(), [&](std::size_t i) {
+    body.for_each_particle([&](std::size_t i) {
       if (!body.anchored.empty() && body.anchored[i]) return;
       const auto [A, J] = body.director_rate(i);
       const Vector3 h = body.director[i].template head<3>();
@@ -557,12 +558,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     complete();
     if (decomposition_) for_each_body([](auto& body, std::size_t) { body.complete_rates(); });
   }
-  template <class Term>
-  [[nodiscard]] double sum_over_particles(std::size_t b, std::size_t count, const Term& term) const {
-    if (!decomposition_) return parallel_sum(count, term);
-    std::vector<double> terms(count);
-    parallel_for(count, [&](std::size_t i) { terms[i] = term(i); });
-    return decomposition_->sum(b, terms);
+  template <class Body, class Term>
+  [[nodiscard]] double sum_over_particles(std::size_t b, const Body& body, const Term& term) {
+    if (!decomposition_) return parallel_sum(body.size(), term);
+    terms_.resize(std::max(terms_.size(), body.size()));
+    body.for_each_particle([&](std::size_t i) { terms_[i] = term(i); });
+    return decomposition_->sum(b, terms_);
   }
 
   std::tuple<B...> bodies_;
@@ -586,6 +587,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   bool resumed_ = false;  // the state was restored: the next run goes on with the one that was saved
   std::unique_ptr<Decomposition> decomposition_;  // null where this process computes everything
   bool exchanging_ = false;
+  std::vector<double> terms_;  // of a sum over particles
   mutable bool incomplete_ = false;  // what the last evaluation left is known only where it was computed
 };
 
