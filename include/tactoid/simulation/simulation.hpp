@@ -263,7 +263,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// v ← v + Δt M⁻¹ f of all unknowns, with the forces of the last evaluate(); Δt in s.
   void kick(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
-      previous_velocity_[b].resize(body.size());
+      previous_velocity_[b].resize(body.size(), Vector4::Zero());
       body.for_each_particle([&](std::size_t i) {
         previous_velocity_[b][i] = body.velocity[i];
         body.velocity[i] += (time_step / body.masses()[i]) * body.force[i];
@@ -275,7 +275,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// was there before is kept, in case that evaluate() breaks down.
   void drift(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
-      previous_[b].resize(body.size());
+      previous_[b].resize(body.size(), Vector4::Zero());
       body.for_each_particle([&](std::size_t i) {
         previous_[b][i] = body.displacement[i];
         body.displacement[i] += time_step * body.velocity[i];
