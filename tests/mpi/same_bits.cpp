@@ -7,9 +7,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 #include <tactoid/boundary/all.hpp>
 #include <tactoid/contact/all.hpp>
@@ -22,6 +25,7 @@
 #include <tactoid/mpi.hpp>
 #include <tactoid/observe/motion.hpp>
 #include <tactoid/observe/stress.hpp>
+#include <tactoid/output/body_frame.hpp>
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/contact_anchoring.hpp>
@@ -257,6 +261,36 @@ TEST_CASE("A step that breaks down ends on all ranks alike, and tells whose poin
     return whole(simulation);
   });
   CHECK_NOTHROW(session->require_same("message", told));
+}
+
+TEST_CASE("Frames in pieces: every particle and every cell is in one of them") {
+  auto simulation = block();
+  take(simulation, 3);
+  auto& body = simulation.body<0>();
+  const std::vector<int> here(body.size(), 0), &owners = simulation.decomposition() ? simulation.decomposition()->owners(0) : here;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("tactoid_pieces_" + session->text_of(0, std::to_string(::getpid())));
+  prepare_folder(folder);
+  (void)session->largest(0);  // the folder is there
+  write_body_pieces(folder / "frame.pvtu", body, simulation.particles<0>(), stress_fields(body), simulation.time(), owners);
+  (void)session->largest(0);  // all pieces are there
+  if (session->rank() == 0) {
+    const std::string whole = read_file(folder / "frame.pvtu");
+    CHECK(whole.find("Name=\"effective_stress\"") != std::string::npos);
+    std::size_t vertices = 0, cells = 0;
+    for (int r = 0; r < session->size(); ++r) {
+      const std::string name = "frame_" + std::to_string(r) + ".vtu";
+      CHECK(whole.find("<Piece Source=\"" + name + "\"/>") != std::string::npos);
+      const std::string piece = read_file(folder / name), mark = "NumberOfCells=\"";
+      const std::size_t count = std::stoul(piece.substr(piece.find(mark) + mark.size(), 12));
+      const auto own = static_cast<std::size_t>(std::count(owners.begin(), owners.end(), r));
+      CHECK(count >= own);
+      vertices += own;
+      cells += count - own;
+    }
+    CHECK(vertices == body.size());
+    CHECK(cells == body.cloud().cells.size());
+    std::filesystem::remove_all(folder);
+  }
 }
 
 TEST_CASE("Ranks that compose different simulations are told so") {

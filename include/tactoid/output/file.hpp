@@ -23,9 +23,9 @@ namespace tactoid {
 /// processes that share a simulation the first one writes, and the others do nothing.
 class AtomicFile {
  public:
-  /// Opens the file beside `path`.
-  explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), temporary_(path_) {
-    if (!is_first_rank()) return;
+  /// Opens the file beside `path`. With `on_every_rank` it is a file of this process's own, and each process writes.
+  explicit AtomicFile(std::filesystem::path path, bool on_every_rank = false) : path_(std::move(path)), temporary_(path_) {
+    if (!on_every_rank && !is_first_rank()) return;
     temporary_ += ".part";
     file_ = std::fopen(temporary_.c_str(), "wb");
     if (file_ == nullptr) detail::fail_file("write", path_, errno);
