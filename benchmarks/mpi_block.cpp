@@ -94,8 +94,8 @@ int main(int argc, char** argv) {
   const long resident = session.largest(resident_megabytes());
   const long table = session.largest(static_cast<long>(simulation.body<0>().memory() / 1000000));
   if (is_first_rank())
-    std::printf("%d ranks x %d threads, %d^3 particles: set-up %.1f s, step %.2f ms (median; least %.2f; processor %.2f), %.3f ns/pair; largest part %.4f of the pairs (%.4f of 1/ranks), "
-                "%ld numbers sent; %ld MB resident, %ld MB body\n",
-                session.size(), threads, edge, set_up, 1e3 * median, 1e3 * times.front(), 1e-3 * static_cast<double>(busiest), 1e9 * median / pairs, static_cast<double>(evaluated) / pairs,
-                static_cast<double>(evaluated) * session.size() / pairs, sent, resident, table);
+    std::printf("%d ranks x %d threads, %d^3 particles: set-up %.1f s, step %.2f ms (median; least %.2f; processor %.2f), %.3f ns/pair; "
+                "largest part %.4f of the pairs (%.4f of 1/ranks), %ld numbers sent; %ld MB resident, %ld MB body\n",
+                session.size(), threads, edge, set_up, 1e3 * median, 1e3 * times.front(), 1e-3 * static_cast<double>(busiest), 1e9 * median / pairs,
+                static_cast<double>(evaluated) / pairs, static_cast<double>(evaluated) * session.size() / pairs, sent, resident, table);
 }

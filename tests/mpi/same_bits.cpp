@@ -144,7 +144,8 @@ auto plate(const Quadrature& quadrature) {
             Materials{Region{"body", Graded{[](const Vector3& X) { return NeoHookean::from_young(1e4 * (1.0 + X[0] / um), 0.3); }}}}};
   shake(body, 0.1);
   return Simulation{Bodies{std::move(body)}, Contacts{},
-                    Boundaries{on<0>(fixed(left)), on<0>(PrescribedMotion{right, [](const Vector3&, double t) { return Vector3(0.1 * t, 0.0, 0.0); }, {true, false, false}}),
+                    Boundaries{on<0>(fixed(left)),
+                               on<0>(PrescribedMotion{right, [](const Vector3&, double t) { return Vector3(0.1 * t, 0.0, 0.0); }, {true, false, false}}),
                                on<0>(BodyForce<>{.acceleration = Vector3(0.0, 1e5, 0.0)})},
                     CentralDifference{.safety = 0.5}};
 }
@@ -229,7 +230,8 @@ TEST_CASE("The residual of an implicit step") {
     SavedState state;
     StateWriter writer(state);
     for (int step = 0; step < 2; ++step) {
-      for (Eigen::Index k = 0; k < z.size(); ++k) z[k] += 1e-3 * scale[k] * detail::hashed_uniform(11, static_cast<std::uint64_t>(k) + 1000000 * static_cast<std::uint64_t>(step));
+      for (Eigen::Index k = 0; k < z.size(); ++k)
+        z[k] += 1e-3 * scale[k] * detail::hashed_uniform(11, static_cast<std::uint64_t>(k) + 1000000 * static_cast<std::uint64_t>(step));
       const double dt = 1e-8;
       problem.prescribe(dt, z);
       rate = (z - start) / dt;

@@ -24,7 +24,8 @@ namespace tactoid::mpi {
 class DividedBodies final : public Decomposition {
  public:
   /// Collective. Throws ParameterError on all ranks where these have not composed the same bodies.
-  DividedBodies(Ranks& ranks, MPI_Comm comm, std::vector<SharedBody> bodies, const Partitioner& partitioner) : ranks_(ranks), comm_(comm), bodies_(std::move(bodies)) {
+  DividedBodies(Ranks& ranks, MPI_Comm comm, std::vector<SharedBody> bodies, const Partitioner& partitioner)
+      : ranks_(ranks), comm_(comm), bodies_(std::move(bodies)) {
     require_same_bodies();
     std::vector<std::vector<std::vector<Index>>> touched;
     ChunkGraph graph;
@@ -43,8 +44,9 @@ class DividedBodies final : public Decomposition {
       sums_.emplace_back(comm_, parts_.back()->particle_owner);
       evaluated_pairs_ += parts_.back()->evaluated_pairs(*bodies_[b].table);
     }
-    known_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners([](const SharedBody& body) { return body.known; }, [](const SharedBody& body, Index i) { return body.known_to_all[i] != 0; }));
-    whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners([](const SharedBody& body) { return body.whole; }, [](const SharedBody&, Index) { return true; }));
+    const auto is_known = [](const SharedBody& body, Index i) { return body.known_to_all[i] != 0; };
+    known_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::known, is_known));
+    whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::whole, [](const SharedBody&, Index) { return true; }));
     find_neighbors();
   }
   ~DividedBodies() override { finish_exchange(); }
@@ -99,11 +101,12 @@ class DividedBodies final : public Decomposition {
     return owner;
   }
 
-  template <class Fields, class Include>
-  [[nodiscard]] std::vector<Parcel> parcels_of_owners(const Fields& fields, const Include& include) const {
+  /// For each rank the particles that it owns, of those that are included.
+  template <class Include>
+  [[nodiscard]] std::vector<Parcel> parcels_of_owners(std::vector<Field*> SharedBody::*fields, const Include& include) const {
     std::vector<Parcel> parcels(static_cast<std::size_t>(ranks_.size()));
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      for (Parcel& parcel : parcels) parcel.pieces.push_back({fields(bodies_[b]), {}});
+      for (Parcel& parcel : parcels) parcel.pieces.push_back({bodies_[b].*fields, {}});
       for (Index i = 0; i < bodies_[b].table->particles; ++i)
         if (include(bodies_[b], i)) parcels[static_cast<std::size_t>(parts_[b]->particle_owner[i])].pieces.back().particles.push_back(i);
     }

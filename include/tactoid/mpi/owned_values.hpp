@@ -98,8 +98,8 @@ class SumInOrder {
   [[nodiscard]] double operator()(std::span<const double> terms) {
     for (std::size_t k = 0; k < sent_.size(); ++k) out_[k] = terms[sent_[k]];
     MPI_Request request = MPI_REQUEST_NULL;
-    succeeded(MPI_Ialltoallv(out_.data(), sent_counts_.data(), sent_places_.data(), MPI_DOUBLE, in_.data(), received_counts_.data(), received_places_.data(), MPI_DOUBLE,
-                             ranks_, &request));
+    succeeded(MPI_Ialltoallv(out_.data(), sent_counts_.data(), sent_places_.data(), MPI_DOUBLE, in_.data(), received_counts_.data(),
+                             received_places_.data(), MPI_DOUBLE, ranks_, &request));
     wait(request);
     std::array<double, parts> sums{};
     for (std::size_t p = 0, k = 0; p < parts; ++p)

@@ -519,7 +519,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     part.whole = part.known;
     part.whole.insert(part.whole.end(), {&fields.position, &fields.velocity});
     if constexpr (Body::has_director) part.whole.push_back(&body.director_flux);
-    body.for_each_region([&](const auto& region, Index) { part.region_cost.push_back((Body::has_director ? 32.0 : 16.0) * (std::decay_t<decltype(region)>::graded ? 4.0 : 1.0)); });
+    body.for_each_region([&](const auto& region, Index) {
+      const double one_by_one = std::decay_t<decltype(region)>::graded ? 4.0 : 1.0;
+      part.region_cost.push_back((Body::has_director ? 32.0 : 16.0) * one_by_one);
+    });
     // Interpolated values, and conditions on them, take in the unknowns around.
     bool facets = false, all = !body.particle_values().identity();
     const auto note = [&](std::size_t of, Reads reads) {
