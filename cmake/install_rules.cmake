@@ -18,6 +18,11 @@ install(
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILE_SET with_hdf5 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILE_SET with_zlib DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+if(TACTOID_WITH_MPI)
+  install(TARGETS tactoid_mpi EXPORT tactoidMpiTargets FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(EXPORT tactoidMpiTargets NAMESPACE tactoid:: DESTINATION "${tactoid_package_dir}")
+  install(FILES "${CMAKE_CURRENT_LIST_DIR}/FindMETIS.cmake" DESTINATION "${tactoid_package_dir}")
+endif()
 install(
   EXPORT tactoidTargets
   NAMESPACE tactoid::

@@ -81,6 +81,20 @@ def check_vtk(path, grid, summary, part):
     assert jacobians.min() > 0.0, jacobians.min()
 
 
+def check_pieces(path, summary):
+    import vtk
+
+    reader = vtk.vtkXMLPUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    output = reader.GetOutput()
+    points = summary["points_cell"] + summary["points_substrate"]
+    assert output.GetNumberOfPoints() == points
+    assert output.GetNumberOfCells() == points + summary["hexahedra_cell"] + summary["hexahedra_substrate"]
+    assert output.GetPointData().GetArray("effective_stress").GetNumberOfTuples() == points
+    assert output.GetPointData().GetArray("velocity").GetNumberOfComponents() == 3
+
+
 def main():
     reader, folder = sys.argv[1:]
     with open(os.path.join(folder, "summary.json")) as file:
@@ -97,6 +111,7 @@ def main():
             check_plots(grid, summary, part)
         else:
             check_vtk(path, grid, summary, part)
+            check_pieces(os.path.join(folder, "pieces.pvtu"), summary)
         print(f"{reader}: {part} with {len(grid.points)} points and {len(grid.types)} cells")
 
 

@@ -2,7 +2,7 @@
 # cmake -D ROOT=<folder of the project> -P rooms.cmake
 cmake_minimum_required(VERSION 3.25)
 set(rooms core geometry neighbors input kernel quadrature kinematics material director contact boundary integrator simulation
-          observe output verify)
+          observe output verify mpi)
 set(rooms_with_fmt simulation integrator observe output verify) # elsewhere texts are made by core/errors.hpp
 set(errors "")
 

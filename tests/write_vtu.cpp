@@ -7,9 +7,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/core/units.hpp>
 #include <tactoid/geometry/ball.hpp>
 #include <tactoid/geometry/disc.hpp>
@@ -75,11 +78,27 @@ double write_body(const PointCloud<3>& cloud, double time, const std::filesystem
   std::vector<float> kind(cloud.cells.size(), 0.5f);
   kind.resize(grid.cell_count(), -0.5f);
   grid.cell_data("kind", kind);
-  grid.write(path);
+  if (path.extension() == ".pvtu") grid.write_pieces(path);
+  else grid.write(path);
   double sum = 0.0;
   for (const auto& cell : cloud.cells) sum += volume(cell, position);
   return sum;
 }
+
+/// One of two processes, for the pieces of a grid.
+struct OneOfTwo final : Ranks {
+  explicit OneOfTwo(int number) : number_(number) { Ranks::current = this; }
+  ~OneOfTwo() override { Ranks::current = nullptr; }
+  [[nodiscard]] int rank() const override { return number_; }
+  [[nodiscard]] int size() const override { return 2; }
+  [[nodiscard]] long largest(long number) override { return number; }
+  [[nodiscard]] std::string text_of(int, const std::string& text) override { return text; }
+  [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody>) override { return nullptr; }
+  [[nodiscard]] bool reports_failure(std::string_view, int) override { return true; }
+
+ private:
+  int number_;
+};
 
 }  // namespace
 
@@ -118,6 +137,12 @@ int main(int argc, char** argv) {
     history.write(std::vector<double>{time, frame * 4e-11, frame * 1e-15, frame * 2e-15, -frame * 8e-15, frame * 1e-15,
                                       frame * 4e-15, 0.0});
     summary.set("volume_cell", volume_cell).set("volume_substrate", volume_substrate);
+  }
+  // Both bodies as the pieces of one grid.
+  const auto at_rest = [](const Point<3>& x) -> Vector3 { return x; };
+  for (const int rank : {1, 0}) {
+    const OneOfTwo ranks(rank);
+    write_body(rank == 0 ? cell : substrate, 0.0, folder / "pieces.pvtu", at_rest);
   }
   summary.set("points_cell", cell.size()).set("points_substrate", substrate.size());
   summary.set("hexahedra_cell", cell.cells.size()).set("hexahedra_substrate", substrate.cells.size());

@@ -23,6 +23,7 @@ class FrameSeries {
   FrameSeries(std::filesystem::path folder, std::vector<std::string> names, std::optional<double> resumed_at = {})
       : folder_(std::move(folder)), names_(std::move(names)), series_(folder_ / "fields.pvd") {
     prepare_folder(folder_ / "fields");
+    if (!is_first_rank()) return;
     if (resumed_at) series_.keep_until(*resumed_at);
     else remove_old();
   }

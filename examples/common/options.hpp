@@ -18,6 +18,7 @@
 
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/quantity.hpp>
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/core/version.hpp>
 #include <tactoid/output/file.hpp>
 
@@ -193,7 +194,7 @@ class Options {
     try {
       app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForHelp&) {
-      fmt::print("{}", app.help());
+      if (is_first_rank()) fmt::print("{}", app.help());
       return false;
     } catch (const CLI::ArgumentMismatch& error) {
       throw ParameterError(fmt::format(
@@ -208,7 +209,7 @@ class Options {
           throw ParameterError(fmt::format("--{} needs a value, but {} follows.", entries_[i].name, text));
     for (const std::string& extra : app.remaining()) refuse(extra);
     if (info) {
-      fmt::print("{}", info_text());
+      if (is_first_rank()) fmt::print("{}", info_text());
       return false;
     }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/core/state.hpp>
 #include <tactoid/output/checkpoint.hpp>
 
@@ -54,7 +55,7 @@ struct Restart {
   /// Says on the standard output where the run goes on, once all is restored.
   template <class S>
   void announce(const S& simulation) const {
-    if (from) fmt::print("going on from t = {:.6g} s, step {}\n", simulation.time(), simulation.steps());
+    if (from && is_first_rank()) fmt::print("going on from t = {:.6g} s, step {}\n", simulation.time(), simulation.steps());
   }
   /// Throws ParameterError where the run would end before the state at `resumed_at` from which it goes on, s.
   static void require_end_after(std::optional<double> resumed_at, double end_time) {
@@ -72,9 +73,13 @@ class RunKeeper {
       : every_(restart.checkpoint_every), options_(options), folder_(std::move(folder)), parts_(std::move(parts)) {}
 
   /// After every step, when all observers have seen it. Throws Interrupted once a signal has come: then save() keeps the state.
+  /// Of several processes all do so in the same step, whichever the signal or the time has come to.
   void check() {
-    stop_.check();
-    if (std::chrono::duration<double>(Clock::now() - saved_).count() > every_) save();
+    const bool due = std::chrono::duration<double>(Clock::now() - saved_).count() > every_;
+    long wish = 2 * stop_.received() + (due ? 1 : 0);
+    if (Ranks::current != nullptr) wish = Ranks::current->largest(wish);
+    if (wish > 1) throw Interrupted{static_cast<int>(wish / 2)};
+    if (wish == 1) save();
   }
   /// Calls work(), which calls check() after every step, keeps the state at its end, and says finish(completed). Where a signal
   /// ended the work the state is kept, too; where a step broke down it is not: the checkpoint there is stays. Both go on.

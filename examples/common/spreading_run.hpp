@@ -46,6 +46,7 @@ template <class Case>
 void SpreadingRun::operator()(const Case& spreading, const Options& options) const {
   const SpreadingParameters& p = spreading.p;
   set_thread_count(threads);
+  if (Ranks::current != nullptr) Ranks::current->require_same("set of options", options.toml());
   const auto start = std::chrono::steady_clock::now();
   auto simulation = spreading.simulation();
 
@@ -63,9 +64,13 @@ void SpreadingRun::operator()(const Case& spreading, const Options& options) con
     writer.part("recorder", recorder);
   });
   Progress progress(p.end_time, simulation.time());
-  fmt::print("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {} threads\n",
-             simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
-             1e9 * simulation.largest_stable_time_step(), thread_count());
+  const std::string ranks = Ranks::current != nullptr && Ranks::current->size() > 1 ? fmt::format("{} ranks of ", Ranks::current->size()) : "";
+  const auto tell = [](const std::string& line) {
+    if (is_first_rank()) fmt::print("{}", line);
+  };
+  tell(fmt::format("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {}{} threads\n",
+                   simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
+                   1e9 * simulation.largest_stable_time_step(), ranks, thread_count()));
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const double setup = seconds();
   const auto record = [&](auto& s) { recorder.record(s, spreading.added.values(s)); };
@@ -92,8 +97,8 @@ void SpreadingRun::operator()(const Case& spreading, const Options& options) con
                    }),
                    every_steps(1, [&](auto&) { keeper.check(); }));  // the last one: the others have seen the step
   }, finish);
-  fmt::print("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps() - first_step,
-             seconds() - setup, setup, 100.0 * simulation.ledger().error(), out);
+  tell(fmt::format("{} steps in {:.1f} s (set-up {:.1f} s), energy error {:.2g} %; results in {}\n", simulation.steps() - first_step,
+                   seconds() - setup, setup, 100.0 * simulation.ledger().error(), out));
 }
 
 // The runs of these are compiled once, in spreading_run.cpp; those of other cases where they are used.

@@ -32,6 +32,8 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
+  /// The signal that has come; 0: none.
+  [[nodiscard]] int received() const { return received_; }
   /// Throws Interrupted once a signal has come.
   void check() const {
     if (received_ != 0) throw Interrupted{received_};

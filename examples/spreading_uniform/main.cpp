@@ -2,11 +2,15 @@
 //
 //   spreading_uniform --stiffness 10 --end-time 5us --out out/spreading_uniform
 //   spreading_uniform --resolution 0.5 --end-time 2us --preset elastic --stiffness 2
+//   mpirun -np 4 spreading_uniform --threads 1 …         on several processes, where Tactoid was built with MPI: the same files
+#include <tactoid/mpi.hpp>
+
 #include "common/program.hpp"
 #include "common/spreading_run.hpp"
 
 int main(int argc, char** argv) {
   using namespace tactoid;
+  mpi::Session session(argc, argv);
   return run_program("spreading_uniform", [&] {
     SpreadingParameters p;
     SpreadingRun run{.out = "out/spreading_uniform"};

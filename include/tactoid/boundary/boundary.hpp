@@ -26,6 +26,13 @@ concept BoundaryTerm =
       { b.stiffness_rate(body) } -> std::convertible_to<double>;
     } || unsatisfied<"A BoundaryTerm has `double stiffness_rate(const ParticleFields& body) const` (1/s^2).">);
 
+/// What a BoundaryTerm reads: its `reads`, or everything.
+template <class B>
+inline constexpr Reads reads_of = [] {
+  if constexpr (requires { B::reads; }) return B::reads;
+  else return Reads::all;
+}();
+
 /// A BoundaryTerm that knows its stiffness, with which static solutions converge fast: `add_stiffness(body, emit)` calls
 /// emit(i, j, K) with K = −∂f_i/∂x_j (3 × 3, N/m) for pairs of particles, at the state of the last call of `apply`; the
 /// contributions to a pair add up.

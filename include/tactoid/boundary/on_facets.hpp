@@ -14,6 +14,7 @@ namespace tactoid {
 /// The cut planes of a body that is computed in part, by symmetry, are no surface: leave them out.
 template <class Term, class Predicate>
 struct OnFacets {
+  static constexpr Reads reads = reads_of<Term>;  ///< as the term does
   Term term;            ///< satisfies BoundaryTerm
   Predicate predicate;  ///< bool(const Point<D>& X)
 

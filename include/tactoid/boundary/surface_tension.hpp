@@ -162,6 +162,7 @@ template <int D>
 /// traction −σ₀ κ n of Zeng and Li, Soft Matter 2012, 8, 5765, eqn (17). Exactly conservative: net force (of rings: along the axis) and torque
 /// are zero to round-off. A BoundaryTerm in 2 and 3 dimensions.
 struct SurfaceTension {
+  static constexpr Reads reads = Reads::facets;  ///< the surface
   double tension = 0.072e-3;                 ///< σ₀, N/m
   /// Share of its first size below which a facet resists less and less to vanish, in [0, 1): |c| counts as √(|c|² + δ²). The force of a facet
   /// that vanishes jumps, to the other side, and no implicit step finds its way there; a facet of its first size pulls by ½ share² less.

@@ -15,6 +15,9 @@ namespace tactoid {
 /// Forces and energies add up, in the order of the parts.
 template <class... Parts>
 struct Combined {
+  /// As the parts do.
+  static constexpr Reads reads_a = ((reads_a_of<Parts> == Reads::facets) && ...) ? Reads::facets : Reads::all;
+  static constexpr Reads reads_b = ((reads_b_of<Parts> == Reads::facets) && ...) ? Reads::facets : Reads::all;  ///< see above
   std::tuple<Parts...> parts;  ///< in the order given
 
   Combined() = default;

@@ -30,6 +30,19 @@ concept Contact =
       { c.stiffness_rate(a, b) } -> std::convertible_to<double>;
     } || unsatisfied<"A Contact has `double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const` (1/s^2).">);
 
+/// What a Contact reads of body A: its `reads_a`, or everything.
+template <class C>
+inline constexpr Reads reads_a_of = [] {
+  if constexpr (requires { C::reads_a; }) return C::reads_a;
+  else return Reads::all;
+}();
+/// What a Contact reads of body B: its `reads_b`, or everything.
+template <class C>
+inline constexpr Reads reads_b_of = [] {
+  if constexpr (requires { C::reads_b; }) return C::reads_b;
+  else return Reads::all;
+}();
+
 /// A Contact that knows its stiffness, with which implicit steps converge fast: `add_stiffness(a, b, emit)` calls
 /// emit(of_b, i, by_b, j, K) with K = −∂f_i/∂x_j (3 × 3, N/m) for pairs of particles, at the state of the last call of `apply`;
 /// of_b and by_b say whether i and j are particles of B. The contributions to a pair add up.

@@ -84,6 +84,8 @@ struct LigandReceptorLaw {
 /// dimensions. The gap is measured from quadrature points on A's facets to the nearest point of B's deformed
 /// surface; the force on A has its exact opposite on B.
 struct LigandReceptor {
+  static constexpr Reads reads_a = Reads::facets;  ///< the surface of A
+  static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
   double bond_density = 500e12;               ///< N_b, bonds per area, 1/m²
   double binding_energy = 0.024e-18;          ///< σ_b, J (pN·µm)
   double range = 100e-9;                      ///< ε, gap of lowest energy, m

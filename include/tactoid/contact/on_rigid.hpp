@@ -110,6 +110,7 @@ class RigidPass {
 /// ParameterError.
 template <GapLaw Law = RepulsiveWall, RigidSurface Surface = RigidPlane>
 struct OnRigid {
+  static constexpr Reads reads = Reads::facets;  ///< the surface
   Law law{};                             ///< of the gap
   Surface surface{};                     ///< against which the body is pressed
   int points_per_direction = 2;          ///< Gauss points along each side of a facet, 1 to 4
@@ -168,6 +169,7 @@ struct OnRigid {
 /// For another motion, or another surface: OnRigid.
 template <GapLaw Law = RepulsiveWall>
 struct RigidPlate {
+  static constexpr Reads reads = Reads::facets;  ///< the surface
   Vector3 point = Vector3::Zero();     ///< a point of the plate at time 0, m
   Vector3 normal = Vector3::UnitZ();   ///< toward the body
   Vector3 velocity = Vector3::Zero();  ///< m/s

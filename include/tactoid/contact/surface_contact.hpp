@@ -214,6 +214,8 @@ class SurfaceContactEngine {
 /// A Contact in 2 and 3 dimensions from any GapLaw: `SurfaceContact{.law = MyLaw{…}}`.
 template <GapLaw Law>
 struct SurfaceContact {
+  static constexpr Reads reads_a = Reads::facets;  ///< the surface of A
+  static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
   Law law{};                                  ///< of the gap
   ContactArea area = ContactArea::reference;  ///< what the law's traction is per
   bool two_pass = false;                      ///< both bodies' facets are sampled, with half the weight each

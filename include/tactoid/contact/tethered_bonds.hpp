@@ -138,6 +138,8 @@ class TetherSites {
 /// that break is dissipated; what bonds hold as they form comes from outside (external power). Rates times the step should be
 /// small: kinetics are first order in the step, and so is the balance of energy in what bonds take in and lose.
 struct TetheredBonds {
+  static constexpr Reads reads_a = Reads::facets;  ///< the surface of A
+  static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
   double density = 1e14;             ///< receptors per reference area of A, 1/m² (plane: 1/m); > 0
   double stiffness = 1e-3;           ///< κ of a bond, N/m; >= 0
   double rest_length = 0.0;          ///< ℓ, m; >= 0

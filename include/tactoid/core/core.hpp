@@ -5,6 +5,7 @@
 #include <tactoid/core/lanes.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/core/quantity.hpp>
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/core/state.hpp>
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/core/text.hpp>

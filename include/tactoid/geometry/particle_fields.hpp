@@ -18,6 +18,14 @@ struct ParticleFields {
   std::span<Vector4> force;            ///< N
 };
 
+/// Which particles of a body a contact or a boundary term reads and loads. One that says `static constexpr Reads reads =
+/// Reads::facets;` (a contact: `reads_a`, `reads_b`, one for each body) lets several processes that share a simulation tell each
+/// other less in every step. Unless it says so, it may read everything.
+enum class Reads {
+  all,    ///< any particle
+  facets  ///< particles on facets of the cloud
+};
+
 /// Energy and power of a contact or boundary term at one instant.
 struct TermEnergy {
   double potential = 0.0;         ///< stored, J

@@ -114,8 +114,9 @@ constexpr std::size_t checkpoint_head_size = 512;  // a user block of HDF5
 
 /// Writes a checkpoint: an HDF5 file behind a head of 512 bytes, which Python's h5py opens as it is. Names of the state are
 /// groups and data sets, those of bodies with their units; `program`, `parameters`, `version` are attributes. The file appears
-/// whole or not at all; a former one at this path stays until then. Throws FileError.
+/// whole or not at all; a former one at this path stays until then. The first of several processes writes. Throws FileError.
 inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  if (!is_first_rank()) return;  // a state that was saved is whole on all of several processes
   using detail::Hdf5, detail::hdf5_succeeded;
   const detail::QuietHdf5 quiet;
   std::string image;

@@ -27,6 +27,7 @@ namespace tactoid {
 
 /// A table of numbers over time (.csv): a line of column names, then one line per call, each on the disc before the
 /// call returns, or, where the disc is full, not at all. Numbers are written in the shortest form that reads back as the same double.
+/// Of several processes that share a simulation the first one writes.
 class HistoryWriter {
  public:
   /// Begins the file anew; or goes on with it, if it is there, behind the last line whose value in the column `key` (the first one
@@ -48,6 +49,7 @@ class HistoryWriter {
     const auto at = key.empty() ? columns_.begin() : std::find(columns_.begin(), columns_.end(), key);
     if (at == columns_.end() && !key.empty())
       throw ParameterError(fmt::format("HistoryWriter: {} is no column of {}.", in_quotes(key), in_quotes(path_.string())));
+    if (!is_first_rank()) return;
     // What is kept is never lost: the file is then replaced as a whole.
     if (keep_until) write_file(path_, head + '\n' + lines_until(head, at - columns_.begin(), *keep_until));
     file_.reset(std::fopen(path_.c_str(), keep_until ? "ab" : "wb"));
@@ -64,6 +66,7 @@ class HistoryWriter {
       throw ParameterError(fmt::format("HistoryWriter: {} values were given for the {} columns of {}.", values.size(),
                                        columns_.size(), in_quotes(path_.string())));
     }
+    if (!file_) return;
     std::string line;
     for (std::size_t i = 0; i < values.size(); ++i) line += fmt::format("{}{}", i == 0 ? "" : ",", values[i]);
     put(line + '\n');

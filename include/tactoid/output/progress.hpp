@@ -12,11 +12,12 @@
 #include <fmt/format.h>
 
 #include <tactoid/core/quantity.hpp>
+#include <tactoid/core/ranks.hpp>
 
 namespace tactoid {
 
 /// One line on the terminal that says how far a run is: fraction, simulated time, steps per second, time to go.
-/// Where the error output is no terminal it stays silent. update() may be called in every step: it looks at the clock,
+/// Where the error output is no terminal, and on all of several processes but the first, it stays silent. update() may be called in every step: it looks at the clock,
 /// and writes at most five times per second.
 class Progress {
  public:
@@ -24,7 +25,7 @@ class Progress {
 
   /// `total` and `start`: simulated times of the end and of the beginning, s.
   explicit Progress(double total, double start = 0.0, std::FILE* stream = stderr)
-      : Progress(total, start, stream, ::isatty(::fileno(stream)) == 1) {}
+      : Progress(total, start, stream, is_first_rank() && ::isatty(::fileno(stream)) == 1) {}
   /// With the caller's word on whether `stream` is a terminal.
   Progress(double total, double start, std::FILE* stream, bool terminal)
       : total_(total), start_(start), stream_(stream), terminal_(terminal), begun_(Clock::now()) {}

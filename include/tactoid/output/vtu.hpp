@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/output/file.hpp>
 
@@ -133,9 +134,35 @@ class VtuGrid {
     cell_data_.push_back(make_array(name, std::span(values), components));
   }
 
-  /// Writes the file, whole or not at all. Throws ParameterError for arrays that do not fit the points or cells,
-  /// FileError where the system refuses.
-  void write(const std::filesystem::path& path) const {
+  /// Writes the file, whole or not at all: the first of several processes that share a simulation. Throws ParameterError for
+  /// arrays that do not fit the points or cells, FileError where the system refuses.
+  void write(const std::filesystem::path& path) const { write(path, false); }
+
+  /// Writes this grid as the piece of this process, `<stem>_<rank>.vtu` beside `path`, and from the first process `path` (.pvtu), which
+  /// names the pieces of all and opens as one grid. All processes give the same arrays. Throws as write().
+  void write_pieces(const std::filesystem::path& path) const {
+    const int rank = Ranks::current != nullptr ? Ranks::current->rank() : 0, size = Ranks::current != nullptr ? Ranks::current->size() : 1;
+    const auto piece = [&](int r) { return fmt::format("{}_{}.vtu", path.stem().string(), r); };
+    write(path.parent_path() / piece(rank), true);
+    if (rank != 0) return;
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n"
+        "<PUnstructuredGrid GhostLevel=\"0\">\n<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n",
+        std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian");
+    const auto describe = [&](std::string_view place, const std::vector<Array>& arrays) {
+      text += fmt::format("<{}>\n", place);
+      for (const Array& array : arrays)
+        text += fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", array.type, array.name, array.components);
+      text += fmt::format("</{}>\n", place);
+    };
+    describe("PPointData", point_data_);
+    describe("PCellData", cell_data_);
+    for (int r = 0; r < size; ++r) text += fmt::format("<Piece Source=\"{}\"/>\n", piece(r));
+    write_file(path, text + "</PUnstructuredGrid>\n</VTKFile>\n");
+  }
+
+ private:
+  void write(const std::filesystem::path& path, bool on_every_rank) const {
     validate();
     std::vector<Array> arrays;  // those of the grid itself
     arrays.push_back(make_array("Points", std::span<const double>(points_), 3));
@@ -167,7 +194,7 @@ class VtuGrid {
     for (const Array& array : cell_data_) head += describe(array);
     head += "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
 
-    AtomicFile file(path);
+    AtomicFile file(path, on_every_rank);
     file.write(head);
     for (const Array* array : appended) {
       const std::uint64_t size = array->bytes.size();
@@ -178,7 +205,6 @@ class VtuGrid {
     file.commit();
   }
 
- private:
   struct Array {
     std::string name;
     std::string_view type;

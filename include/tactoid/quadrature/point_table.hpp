@@ -63,9 +63,11 @@ struct PointTable {
 
   std::vector<PointChunk> chunks;               ///< sorted by colour
   std::vector<std::size_t> color_offsets;       ///< chunks of colour c: [color_offsets[c], color_offsets[c + 1])
+  std::size_t pairs_elsewhere = 0;              ///< entries of rows that are empty here, because other processes evaluate them
 
   [[nodiscard]] std::size_t points() const { return volume.size(); }       ///< number of quadrature points
-  [[nodiscard]] std::size_t pairs() const { return entries.size(); }       ///< number of entries, padding included
+  /// Number of entries, padding included; of the whole body, where it is shared by several processes.
+  [[nodiscard]] std::size_t pairs() const { return entries.size() + pairs_elsewhere; }
   [[nodiscard]] bool value_based() const { return point_values.empty(); }  ///< unknowns are values at the particles
   /// The entries of point q.
   [[nodiscard]] std::span<const TableEntry> row(std::size_t q) const {

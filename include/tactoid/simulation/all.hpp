@@ -2,6 +2,7 @@
 
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/contact_anchoring.hpp>
+#include <tactoid/simulation/decomposition.hpp>
 #include <tactoid/simulation/implicit_problem.hpp>
 #include <tactoid/simulation/observer.hpp>
 #include <tactoid/simulation/placement.hpp>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -21,6 +22,7 @@
 #include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
 #include <tactoid/quadrature/particle_values.hpp>
+#include <tactoid/simulation/decomposition.hpp>
 #include <tactoid/simulation/earlier_configuration.hpp>
 #include <tactoid/simulation/region_laws.hpp>
 #include <tactoid/simulation/row_operations.hpp>
@@ -154,6 +156,13 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     std::apply([&](const auto&... region) { Index r = 0; (f(region, r++), ...); }, laws_);
   }
 
+  /// Calls f(i) for the particles that this process computes: all, unless others share the body. As parallel_for.
+  template <class F>
+  void for_each_particle(const F& f) const {
+    const Index* const local = share_ ? share_->local.data() : nullptr;
+    parallel_for(local ? share_->local.size() : size(), [&](std::size_t k) { f(local ? local[k] : k); });
+  }
+
   // --- reference ---------------------------------------------------------------------------------------------
   /// F₀ of point q, from the first configuration to that of the table; 1 where these are the same.
   [[nodiscard]] Tensor3 earlier_gradient(std::size_t q) const { return earlier_.empty() ? Tensor3(Tensor3::Identity()) : earlier_.gradient[q]; }
@@ -230,7 +239,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// energies and powers. One pass over the table. With `advance` the histories advanced by `time_step` wait for
   /// accept_histories(): a step that breaks down has not touched them.
   BodyTotals add_internal_forces(double time_step, bool advance) {
-    if constexpr (has_director) std::fill(director_flux.begin(), director_flux.end(), Vector4::Zero());
+    if constexpr (has_director) for_each_particle([&](std::size_t i) { director_flux[i].setZero(); });
     bool rates = false;
     for_each_region([&](const auto& region, Index) { rates = rates || needs_rate(region); });
     if (rates) pack_motion();
@@ -246,6 +255,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
           pass<false>(region, chunk, c, time_step, advance);
       });
     });
+    if (share_) gather_chunks();
     BodyTotals totals;
     for (const BodyTotals& part : chunk_totals_) totals += part;
     return totals;
@@ -277,7 +287,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   [[nodiscard]] double largest_volume_ratio() const
     requires has_director
   {
-    return *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
+    return share_ ? largest_volume_ratio_ : *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
   }
 
   // --- views -------------------------------------------------------------------------------------------------
@@ -291,6 +301,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         const std::size_t q = region.begin + i;
         if (i % std::size_t(Region::width) != 0) return;
         const std::size_t last = std::min(region.end, q + std::size_t(Region::width));
+        if (is_elsewhere(q, last)) return;
         BlockGradients<Region::width> gradients;
         gather_block<true>(q, last, gradients);
         auto state = block_state<true, typename Region::Scalar>(q, last, gradients);
@@ -308,6 +319,10 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
           samples[p] = {cauchy_from_piola(P, F), determinant(F)};
         }
       });
+    });
+    if (share_) gather_at_points<10>([&](std::size_t q, auto at) {
+      for (int a = 0; a < 9; ++a) at(a, samples[q].cauchy(a % 3, a / 3));
+      at(9, samples[q].J);
     });
     return samples;
   }
@@ -327,9 +342,41 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return {A / V, J / V};
   }
 
+  // --- shared by several processes ---------------------------------------------------------------------------
+  /// Leaves to other processes what is not in this share of the body. Everything must be evaluated before.
+  void share_with(std::shared_ptr<BodyShare> share) {
+    share_ = std::move(share);
+    share_->drop_rows(table_);
+    if constexpr (has_director) largest_volume_ratio_ = *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
+  }
+  /// Makes the rates of the director known at all points. Collective, as Decomposition's functions; nothing in a body that is not shared.
+  void complete_rates() {
+    if constexpr (has_director)
+      if (share_) gather_at_points<10>([&](std::size_t q, auto at) {
+        for (int a = 0; a < 9; ++a) at(a, point_rate_[q](a % 3, a / 3));
+        at(9, point_volume_ratio_[q]);
+      });
+  }
+  /// Makes the rates of the director and the histories known at all points; as complete_rates().
+  void complete_points() {
+    complete_rates();
+    if (!share_) return;
+    for_each_region([&](auto& region, Index) {
+      using Region = std::decay_t<decltype(region)>;
+      constexpr std::size_t scalars = history_size<typename Region::Law>;
+      if constexpr (scalars > 0) gather_at_points<scalars>([&](std::size_t q, auto at) {
+        if (q < region.begin || q >= region.end) return;
+        auto* numbers = history_scalars<typename Region::Law, typename Region::Scalar>(region.histories[region.block(q)]);
+        const int l = static_cast<int>((q - region.begin) % static_cast<std::size_t>(Region::width));
+        for (std::size_t k = 0; k < scalars; ++k) at(k, numbers[k], l);
+      });
+    });
+  }
+
   /// What a step leaves to the next one. The reference positions tell bodies apart.
   template <class Archive>
   void state(Archive& archive) {
+    if constexpr (!Archive::restoring) complete_points();
     archive.expect("reference", reference());
     archive.expect("points", table_.points());
     restore_reference(archive);
@@ -346,6 +393,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       archive("point_volume_ratio", point_volume_ratio_);
     }
     for_each_region([&](auto& region, Index r) { archive.part("region_" + std::to_string(r), region); });
+    if constexpr (Archive::restoring && has_director) largest_volume_ratio_ = *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
   }
 
   /// Bytes of the tables and fields of the body.
@@ -502,7 +550,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   void pack_motion() {
     motion_.resize(size());
     const bool updated = !earlier_.empty();
-    parallel_for(size(), [&](std::size_t i) {
+    for_each_particle([&](std::size_t i) {
       quad(motion_[i].displacement) = quad(displacement[i].data());
       if (updated) quad(motion_[i].displacement) += quad(earlier_.position[i].data()) - quad(table_.particle_position[i].data());
       quad(motion_[i].velocity) = quad(velocity[i].data());
@@ -560,6 +608,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     double stretch = 0.0;
     for (std::size_t first = chunk.begin; first < chunk.end; first += W) {
       const std::size_t last = std::min(chunk.end, first + W);
+      if (is_elsewhere(first, last)) continue;
       BlockGradients<W> gradients;
       gather_block<Rate>(first, last, gradients);
       PointState<T> state = block_state<Rate, T>(first, last, gradients);
@@ -628,6 +677,50 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     chunk_stretch_[c] = std::max(chunk_stretch_[c], stretch);
   }
 
+  /// Whether other processes evaluate these points, and this one need not.
+  [[nodiscard]] bool is_elsewhere(std::size_t first, std::size_t last) const {
+    if (!share_) return false;
+    const char* evaluated = share_->evaluated.data();
+    return std::none_of(evaluated + first, evaluated + last, [](char here) { return here != 0; });
+  }
+
+  /// Energies, stretches and failures of all chunks from the processes that own them.
+  void gather_chunks() {
+    constexpr std::size_t width = 7;
+    std::vector<double> values(table_.chunks.size() * width, 0.0);
+    for (std::size_t c = 0; c < table_.chunks.size(); ++c) {
+      if (!share_->own_chunk[c]) continue;
+      const BodyTotals& t = chunk_totals_[c];
+      const double failure = chunk_failure_[c] == no_failure ? -1.0 : static_cast<double>(chunk_failure_[c]);
+      double ratio = 0.0;
+      if constexpr (has_director)
+        for (std::size_t q = table_.chunks[c].begin; q < table_.chunks[c].end; ++q) ratio = std::max(ratio, point_volume_ratio_[q]);
+      const std::array<double, width> own{t.strain_energy, t.stabilization_energy, t.dissipated_power, t.active_power, chunk_stretch_[c], failure, ratio};
+      std::copy(own.begin(), own.end(), values.data() + c * width);
+    }
+    share_->gather_chunks(values, width);
+    largest_volume_ratio_ = 0.0;
+    for (std::size_t c = 0; c < table_.chunks.size(); ++c) {
+      const double* v = values.data() + c * width;
+      chunk_totals_[c] = {v[0], v[1], v[2], v[3]};
+      chunk_stretch_[c] = v[4];
+      chunk_failure_[c] = v[5] < 0.0 ? no_failure : static_cast<std::size_t>(v[5]);
+      largest_volume_ratio_ = std::max(largest_volume_ratio_, v[6]);
+    }
+  }
+
+  /// N numbers at all points from the processes that own them. visit(q, at) calls at(k, x) with the number k of point q, or
+  /// at(k, x, l) with lane l of it.
+  template <std::size_t N, class Visit>
+  void gather_at_points(const Visit& visit) {
+    std::vector<double> values(table_.points() * N, 0.0);
+    for (std::size_t q = 0; q < table_.points(); ++q)
+      if (share_->evaluated[q]) visit(q, [&](auto k, const auto& x, int l = 0) { values[q * N + static_cast<std::size_t>(k)] = lane(x, l); });
+    share_->gather_points(values, N);
+    for (std::size_t q = 0; q < table_.points(); ++q)
+      visit(q, [&](auto k, auto& x, int l = 0) { set_lane(x, l, values[q * N + static_cast<std::size_t>(k)]); });
+  }
+
   template <bool Rate>
   rows::StabilizationPower stabilize(const rows::StabilizedPoint& point, const rows::Gradient& du, const rows::Gradient& dv,
                                      Quad* held, rows::Gradient& flux) {
@@ -676,6 +769,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::vector<Tensor3> point_rate_;
   std::vector<double> point_volume_ratio_;
   std::vector<std::vector<Index>> points_of_particle_;
+  std::shared_ptr<BodyShare> share_;    // null where this process computes the whole body
+  double largest_volume_ratio_ = 1.0;   // of a shared body with a director
 };
 
 /// Deduced without a director field.

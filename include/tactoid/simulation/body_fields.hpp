@@ -30,7 +30,7 @@ struct BodyFields {
   template <class Body>
   void refresh(const Body& body, double lag) {
     if (body.particle_values().identity()) {
-      parallel_for(body.size(), [&](std::size_t i) {
+      body.for_each_particle([&](std::size_t i) {
         position[i] = reference[i] + body.displacement[i];
         velocity[i] = body.velocity[i];
         if (lag > 0.0) velocity[i] += (lag / body.masses()[i]) * body.force[i];  // else the forces may be those of a state that broke down

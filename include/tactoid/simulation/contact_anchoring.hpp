@@ -11,6 +11,8 @@ namespace tactoid {
 /// to the capture distance for the first time keeps the director that it has then. Placed among the contacts,
 /// `between<0, 1>(ContactAnchoring{})`; it exerts no force. Zeng and Li, Soft Matter 2012, 8, 5765, below eqn (10).
 struct ContactAnchoring {
+  static constexpr Reads reads_a = Reads::facets;  ///< the surface of A
+  static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
   double capture_distance = 100e-9;  ///< m, > 0
   int interval = 10;                 ///< steps between two looks at the gaps
   PerDimension<SurfaceGaps> gaps{};  ///< set by initialize(), as the rest

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -18,12 +19,14 @@
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/core/state.hpp>
 #include <tactoid/integrator/integrator.hpp>
 #include <tactoid/integrator/reference_update.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/body_fields.hpp>
 #include <tactoid/simulation/contact_anchoring.hpp>
+#include <tactoid/simulation/decomposition.hpp>
 #include <tactoid/simulation/energy_ledger.hpp>
 #include <tactoid/simulation/observer.hpp>
 #include <tactoid/simulation/placement.hpp>
@@ -40,7 +43,8 @@ namespace tactoid {
 ///   simulation.run(5_us, every(0.1_us, observer));
 ///
 /// Everything is checked and evaluated once at construction; ParameterError or GeometryError tell what is wrong.
-/// Forces are summed in a fixed order: results are the same to the bit for any number of threads.
+/// Forces are summed in a fixed order: results are the same to the bit for any number of threads. Several processes with a
+/// session of <tactoid/mpi.hpp> divide its bodies among them: all of them make the same calls, in the same order.
 template <class BodiesType, class ContactsType, class BoundariesType, class IntegratorType>
 class Simulation;
 
@@ -95,17 +99,24 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     evaluate();
     ledger_.initial = ledger_.total();
     integrator_.initialize(*this);
+    if (Ranks::current != nullptr && Ranks::current->size() > 1) decompose(*Ranks::current);
   }
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
   // --- parts -------------------------------------------------------------------------------------------------
-  /// Body N, in the order of Bodies{…}.
+  /// Body N, in the order of Bodies{…}, whole on every process: where several share it, the first call after a step gathers it.
   template <std::size_t N>
-  [[nodiscard]] auto& body() { return std::get<N>(bodies_); }
-  /// Body N, in the order of Bodies{…}.
+  [[nodiscard]] auto& body() {
+    complete();
+    return std::get<N>(bodies_);
+  }
+  /// Body N, in the order of Bodies{…}; see above.
   template <std::size_t N>
-  [[nodiscard]] const auto& body() const { return std::get<N>(bodies_); }
+  [[nodiscard]] const auto& body() const {
+    complete();
+    return std::get<N>(bodies_);
+  }
   /// The contact number N of Contacts{…}, to read what it holds.
   template <std::size_t N>
   [[nodiscard]] auto& contact() { return std::get<N>(contacts_).contact; }
@@ -117,9 +128,14 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   [[nodiscard]] double last_time_step() const { return last_step_; }    ///< length of the step that led here, s; 0 at the start
   [[nodiscard]] std::size_t steps() const { return steps_; }            ///< taken since the start
   [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }  ///< energies now and works since the start, J
-  /// Values at the particles of a body: positions, velocities, forces of contacts and boundary terms.
+  /// Values at the particles of a body: positions, velocities, forces of contacts and boundary terms; whole, as body().
   template <std::size_t N>
-  [[nodiscard]] ParticleFields particles() { return fields_[N].view(); }
+  [[nodiscard]] ParticleFields particles() {
+    complete();
+    return fields_[N].view();
+  }
+  /// How the bodies are divided among processes; null where this one computes everything.
+  [[nodiscard]] const Decomposition* decomposition() const { return decomposition_.get(); }
   /// Essential conditions of a body, with their reactions.
   template <std::size_t N>
   [[nodiscard]] const EssentialConditions& essential() const { return essential_[N]; }
@@ -155,6 +171,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Velocity at the present instant (not at the middle of the last step) of the unknowns of a body, m/s.
   template <std::size_t N>
   [[nodiscard]] Field velocity() const {
+    complete();
     const auto& body = std::get<N>(bodies_);
     Field v(body.size());
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = present_velocity(body, N, i);
@@ -207,6 +224,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Contacts, terms and integrators take part if they have a state (core/state.hpp).
   template <class Archive>
   void state(Archive& archive) {
+    if constexpr (Archive::restoring) incomplete_ = false;
+    else complete();
     archive("time", time_);
     archive("evaluated", evaluated_);
     archive("last_step", last_step_);
@@ -246,8 +265,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// v ← v + Δt M⁻¹ f of all unknowns, with the forces of the last evaluate(); Δt in s.
   void kick(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
-      previous_velocity_[b].resize(body.size());
-      parallel_for(body.size(), [&](std::size_t i) {
+      previous_velocity_[b].resize(body.size(), Vector4::Zero());
+      body.for_each_particle([&](std::size_t i) {
         previous_velocity_[b][i] = body.velocity[i];
         body.velocity[i] += (time_step / body.masses()[i]) * body.force[i];
       });
@@ -258,14 +277,17 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// was there before is kept, in case that evaluate() breaks down.
   void drift(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
-      previous_[b].resize(body.size());
-      parallel_for(body.size(), [&](std::size_t i) {
+      previous_[b].resize(body.size(), Vector4::Zero());
+      body.for_each_particle([&](std::size_t i) {
         previous_[b][i] = body.displacement[i];
         body.displacement[i] += time_step * body.velocity[i];
       });
+    });
+    begin_exchange();
+    for_each_body([&](auto& body, std::size_t b) {
       if (essential_[b].empty()) return;
       ledger_.external_work += essential_[b].impose(time_ + time_step, time_step, last_step_, body.displacement, body.velocity);
-      for (std::size_t i = 0; i < body.size(); ++i) body.force[i] += essential_[b].forces()[i];
+      body.for_each_particle([&](std::size_t i) { body.force[i] += essential_[b].forces()[i]; });
     });
     moved_ = true;
     step_before_ = last_step_;
@@ -278,8 +300,9 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void evaluate() { evaluate(false); }
 
   /// Updates the reference of every body that is distorted by more than `distortion` (Body::distortion) and evaluates the forces anew.
-  /// Nothing moves, and time stands still. Bodies need a value-based quadrature.
+  /// Nothing moves, and time stands still. Bodies need a value-based quadrature. Throws ParameterError where several processes share them.
   ReferenceUpdate update_references(double distortion) {
+    if (decomposition_) throw ParameterError("UpdatedReference: bodies that several processes share keep their reference; run it on one.");
     ReferenceUpdate done;
     for_each_body([&](auto& body, std::size_t b) {
       const double present = body.distortion();
@@ -300,7 +323,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     if (done.updates == 0) return done;
     const double before = ledger_.total();
     const StepEnergies energies = forces(evaluated_, time_, 0.0);
-    for_each_body([&](const auto& body, std::size_t) { check(body); });
+    for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
     take_stored(energies);
     done.lost_energy = before - ledger_.total();
     ledger_.reference_updates += done.lost_energy;
@@ -355,6 +378,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Forces and energies at the present state; histories advanced by `time_step` wait for being accepted.
   StepEnergies forces(double contact_time, double time, double time_step) {
     StepEnergies energies;
+    incomplete_ = true;
     for_each_body([&](auto& body, std::size_t b) { fields_[b].refresh(body, velocity_lag * time_step); });
     term_rates_.fill(0.0);
     for_each_contact([&](auto& between, std::size_t) {
@@ -372,22 +396,25 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         term_rates_[b] += on.term.stiffness_rate(fields_[b].view());
       }
     });
+    end_exchange();
     for_each_body([&](auto& body, std::size_t b) {
-      parallel_for(body.size(), [&](std::size_t i) { body.force[i].setZero(); });
-      body.particle_values().distribute(fields_[b].force, body.force);
+      body.for_each_particle([&](std::size_t i) { body.force[i].setZero(); });
+      if (body.particle_values().identity()) body.for_each_particle([&](std::size_t i) { body.force[i] += fields_[b].force[i]; });
+      else body.particle_values().distribute(fields_[b].force, body.force);
       energies.internal += body.add_internal_forces(time_step, true);
-      energies.kinetic += parallel_sum(body.size(), [&](std::size_t i) {
+      energies.kinetic += sum_over_particles(b, body, [&](std::size_t i) {
         return 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
       });
     });
     if (!inertial()) energies.kinetic = 0.0;
+    if constexpr (synchronous<I>) complete_rates();
     return energies;
   }
 
   /// `from_rest`: the step began where no velocity was known, so that its powers are those of its end.
   void evaluate(bool from_rest) {
     const StepEnergies energies = forces(time_, time_, last_step_);
-    for_each_body([&](const auto& body, std::size_t) { check(body); });
+    for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
     // All bodies are sound: what the step has brought is kept.
     for_each_body([&](auto& body, std::size_t) {
       body.accept_histories();
@@ -397,6 +424,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       using Pair = std::decay_t<decltype(between)>;
       if constexpr (requires { between.contact.anchor(std::get<Pair::first>(bodies_)); }) between.contact.anchor(std::get<Pair::first>(bodies_));
     });
+    if constexpr (synchronous<I>)  // a tangent needs all histories
+      if (decomposition_) for_each_body([](auto& body, std::size_t) { body.complete_points(); });
     book(energies, from_rest);
     evaluated_ = time_;
     drifted_ = false;
@@ -466,7 +495,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   static void advance_director(Body& body, double time_step) {
     if (time_step <= 0.0) return;
     const auto& law = body.director_law();
-    parallel_for(body.size(), [&](std::size_t i) {
+    body.for_each_particle([&](std::size_t i) {
       if (!body.anchored.empty() && body.anchored[i]) return;
       const auto [A, J] = body.director_rate(i);
       const Vector3 h = body.director[i].template head<3>();
@@ -476,7 +505,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
 
   template <class Body>
-  void check(const Body& body) const {
+  void check(const Body& body, std::size_t b) const {
     const std::size_t q = body.failed_point();
     if (q == body.table().points()) return;
     const Index particle = body.table().owner[q];
@@ -484,13 +513,14 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     const Vector4& u = body.displacement[particle];
     bool finite = u.allFinite();
     for (const TableEntry& entry : body.table().row(q)) finite = finite && body.displacement[entry.particle].allFinite();
-    throw ComputationError(fmt::format(
+    const std::string message = fmt::format(
         "Body \"{}\", particle {} at X = ({:.4g}, {:.4g}, {:.4g}) m, u = ({:.3g}, {:.3g}, {:.3g}) m, t = {:.6g} s: {}.", body.name(), particle, X[0], X[1],
         X[2], u[0], u[1], u[2], time_,
         finite ? "the point is inverted (J <= 0); likely causes are a deformation too large for this resolution, a contact "
                  "too violent, or too weak a stabilisation"
                : "the displacement is not a number; likely causes are a time step above the stable one or a law "
-                 "evaluated outside its range"));
+                 "evaluated outside its range");
+    throw ComputationError(decomposition_ ? decomposition_->told_by_owner(b, q, message) : message);
   }
 
   /// Undoes the drift of a step whose evaluation broke down.
@@ -505,6 +535,76 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
     time_ -= last_step_;
     last_step_ = step_before_;
+  }
+
+  // --- shared by several processes ---------------------------------------------------------------------------
+  /// Leaves to each process its part of the bodies, whose first state every process has evaluated.
+  void decompose(Ranks& ranks) {
+    std::vector<SharedBody> parts;
+    for_each_body([&](auto& body, std::size_t b) { parts.push_back(shared_body(body, fields_[b], b)); });
+    decomposition_ = ranks.decompose(std::move(parts));
+    for_each_body([&](auto& body, std::size_t b) { body.share_with(decomposition_->share(b)); });
+  }
+  template <class Body>
+  [[nodiscard]] SharedBody shared_body(Body& body, BodyFields& fields, std::size_t b) {
+    SharedBody part;
+    part.table = &body.table();
+    part.keep_rows = synchronous<I> || !body.table().value_based();
+    part.motion = {&body.displacement, &body.velocity};
+    if constexpr (Body::has_director) part.motion.push_back(&body.director);
+    part.known = part.motion;
+    part.known.push_back(&body.force);  // velocities at the present instant need it
+    part.whole = part.known;
+    part.whole.insert(part.whole.end(), {&fields.position, &fields.velocity});
+    if constexpr (Body::has_director) part.whole.push_back(&body.director_flux);
+    body.for_each_region([&](const auto& region, Index) {
+      const double one_by_one = std::decay_t<decltype(region)>::graded ? 4.0 : 1.0;
+      part.region_cost.push_back((Body::has_director ? 32.0 : 16.0) * one_by_one);
+    });
+    // Interpolated values, and conditions on them, take in the unknowns around.
+    bool facets = false, all = !body.particle_values().identity();
+    const auto note = [&](std::size_t of, Reads reads) {
+      if (of == b) (reads == Reads::facets ? facets : all) = true;
+    };
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      note(Pair::first, reads_a_of<std::decay_t<decltype(between.contact)>>);
+      note(Pair::second, reads_b_of<std::decay_t<decltype(between.contact)>>);
+    });
+    for_each_boundary([&](auto& on, std::size_t) {
+      if constexpr (!is_motion<decltype(on)>) note(std::decay_t<decltype(on)>::body, reads_of<std::decay_t<decltype(on.term)>>);
+    });
+    part.known_to_all.assign(body.size(), all ? 1 : 0);
+    if (facets)
+      for (const auto& facet : body.cloud().facets)
+        for (const Index i : facet) part.known_to_all[i] = 1;
+    for (int c = 0; c < 3; ++c)
+      for (const auto& condition : essential_[b].conditions(c)) part.known_to_all[condition.particle] = 1;
+    return part;
+  }
+  void begin_exchange() {
+    if (!decomposition_) return;
+    decomposition_->begin_exchange();
+    exchanging_ = true;
+  }
+  void end_exchange() {
+    if (std::exchange(exchanging_, false)) decomposition_->end_exchange();
+  }
+  /// Makes what the last evaluation left known to all processes; nothing where that has been done.
+  void complete() const {
+    if (decomposition_ && std::exchange(incomplete_, false)) decomposition_->complete();
+  }
+  /// And the rates of the directors.
+  void complete_rates() {
+    complete();
+    if (decomposition_) for_each_body([](auto& body, std::size_t) { body.complete_rates(); });
+  }
+  template <class Body, class Term>
+  [[nodiscard]] double sum_over_particles(std::size_t b, const Body& body, const Term& term) {
+    if (!decomposition_) return parallel_sum(body.size(), term);
+    terms_.resize(std::max(terms_.size(), body.size()));
+    body.for_each_particle([&](std::size_t i) { terms_[i] = term(i); });
+    return decomposition_->sum(b, terms_);
   }
 
   std::tuple<B...> bodies_;
@@ -526,6 +626,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   double run_start_ = 0.0;
   std::size_t run_start_steps_ = 0;
   bool resumed_ = false;  // the state was restored: the next run goes on with the one that was saved
+  std::unique_ptr<Decomposition> decomposition_;  // null where this process computes everything
+  bool exchanging_ = false;
+  std::vector<double> terms_;  // of a sum over particles
+  mutable bool incomplete_ = false;  // what the last evaluation left is known only where it was computed
 };
 
 /// Deduced from what is composed.

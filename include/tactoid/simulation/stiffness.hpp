@@ -6,6 +6,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/material/tangent.hpp>
 #include <tactoid/quadrature/coloring.hpp>
@@ -145,6 +146,8 @@ template <class Body>
   constexpr int D = Body::dimension;
   const PointTable& table = body.table();
   const Field displacement = body.displacement_in_table();
+  if (table.pairs_elsewhere > 0)
+    throw ParameterError("Body \"" + body.name() + "\": assemble_stiffness needs all rows, but other processes hold some of them; an implicit integrator keeps them all.");
   StiffnessMatrix K = detail::stiffness_pattern<D>(table);
   body.for_each_region([&](const auto& region, Index r) {
     using Law = typename std::decay_t<decltype(region)>::Law;

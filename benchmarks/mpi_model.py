@@ -1,0 +1,52 @@
+"""What a step costs on many ranks: the model of include/tactoid/mpi/README.md, as a table.
+
+    python3 mpi_model.py [--ns-per-pair 8 --latency 6e-6 --bandwidth 2e9 --surface 0]
+
+A cube of N particles, cut into P cubes of n = N/P; a rank computes alone, one thread. Times in seconds, bytes as doubles of 8.
+"""
+
+import argparse
+import math
+
+ROW = 57  # pairs of a row at the support 2.35: particles within two layers and a bit
+REACH = 2.02  # layers of particles that a row reaches beyond its point: from the measured halo of the block of 54³
+CHUNK = 512  # points
+UNPACK = 30e-9  # s per chunk of the whole body, on every rank
+
+
+def step(N, P, c, latency, bandwidth, surface, contact):
+    n = N / P
+    a = n ** (1 / 3)
+    whole = N ** (1 / 3)
+    grown = min(a + 2 * REACH, whole) ** 3  # rows that a rank inside evaluates
+    halo = min(a + 4 * REACH, whole) ** 3 - n  # particles that they touch and other ranks own
+    work = c * ROW * grown
+    tell = 48 * halo / bandwidth
+    chunks = N / CHUNK * (56 / bandwidth + UNPACK)  # all chunks to all ranks
+    kinetic = 8 * max(n, N / min(P, 64)) / bandwidth  # 64 parts are summed by 64 ranks at most
+    known = surface * 6 * whole**2
+    contacts = known * (72 / bandwidth + contact)  # by all ranks
+    wait = 5 * latency * math.log2(P)  # five collective calls
+    return c * ROW * N / P, work, tell, chunks + kinetic, contacts, wait
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--ns-per-pair", type=float, default=8.0)
+    parser.add_argument("--latency", type=float, default=6e-6, help="s per stage of a collective call")
+    parser.add_argument("--bandwidth", type=float, default=2e9, help="bytes/s that one rank sends or receives")
+    parser.add_argument("--surface", type=float, default=0.0, help="share of the cube's surface that is known to all")
+    parser.add_argument("--contact-ns", type=float, default=200.0, help="ns per particle of that surface, on every rank")
+    p = parser.parse_args()
+    print("| N | ranks | particles per rank | rows evaluated twice | step, ms | halo | chunks, energy | surfaces | waiting | efficiency |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for N in (1e7, 1e8, 1e9):
+        for P in (64, 256, 1024, 4096):
+            ideal, work, *rest = step(N, P, 1e-9 * p.ns_per_pair, p.latency, p.bandwidth, p.surface, 1e-9 * p.contact_ns)
+            total = work + sum(rest)
+            shares = " | ".join(f"{100 * x / total:.1f} %" for x in rest)
+            print(f"| 10{'⁷⁸⁹'[int(round(math.log10(N))) - 7]} | {P} | {N / P:.3g} | {100 * (work / ideal - 1):.0f} % | {1e3 * total:.3g} | {shares} | {ideal / total:.2f} |")
+
+
+if __name__ == "__main__":
+    main()

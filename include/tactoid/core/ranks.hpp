@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tactoid/core/errors.hpp>
+
+namespace tactoid {
+
+class Decomposition;  // simulation/decomposition.hpp
+struct SharedBody;    // simulation/decomposition.hpp
+
+/// The processes (ranks, in the words of MPI) that compute one simulation together. The library knows them by this interface
+/// alone; <tactoid/mpi.hpp> implements it. Calls are a few per step, never per particle, so that they may be virtual.
+/// *Collective* functions must be called by all ranks, in the same order.
+class Ranks {
+ public:
+  Ranks() = default;
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+  virtual ~Ranks() = default;
+
+  [[nodiscard]] virtual int rank() const = 0;  ///< of this process, in [0, size())
+  [[nodiscard]] virtual int size() const = 0;  ///< number of processes
+
+  /// The largest of the numbers that the ranks give. Collective.
+  [[nodiscard]] virtual long largest(long number) = 0;
+  /// What rank `of` gives, for all. Collective.
+  [[nodiscard]] virtual std::string text_of(int of, const std::string& text) = 0;
+  /// Throws ParameterError on all ranks, with the first rank that differs from rank 0 and what of it, unless all give the same
+  /// text. Collective.
+  void require_same(std::string_view what, const std::string& text) {
+    const long differs = largest(text_of(0, text) == text ? 0 : size() - rank());
+    if (differs > 0)
+      throw ParameterError("Rank " + std::to_string(size() - differs) + " has another " + std::string(what) +
+                           " than rank 0: all ranks must run the same program with the same options.");
+  }
+
+  /// Divides bodies among the ranks. Collective; throws ParameterError on all ranks where these have not composed the same.
+  [[nodiscard]] virtual std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) = 0;
+
+  /// To be called where a program is about to end by a failure. Where all ranks fail alike, true on the one that reports it.
+  /// A failure of this rank alone would leave the others waiting: then it is written to the error output behind the number of the
+  /// rank, and all ranks are ended with this exit status. Not collective.
+  [[nodiscard]] virtual bool reports_failure(std::string_view text, int status) = 0;
+
+  /// The ranks of this process; null without a session, and then everything is computed here. A session object sets it and clears
+  /// it. It is the one global of the library: MPI itself is one per process, and so simulations find it without an argument, in
+  /// programs that are written for one process.
+  static inline Ranks* current = nullptr;
+};
+
+/// Whether this process writes files and reports: the first of the ranks, or the only one.
+[[nodiscard]] inline bool is_first_rank() { return Ranks::current == nullptr || Ranks::current->rank() == 0; }
+
+}  // namespace tactoid

@@ -1,0 +1,24 @@
+#pragma once
+
+/// For programs that run on several processes under mpirun. Link tactoid::mpi, which there is with -D TACTOID_WITH_MPI=ON; without
+/// it the same program compiles, needs no MPI, and its session does nothing.
+
+#ifdef TACTOID_WITH_MPI
+
+#include <tactoid/mpi/all.hpp>
+
+#else
+
+namespace tactoid::mpi {
+
+/// Without MPI: nothing.
+class Session {
+ public:
+  Session(int&, char**&) {}  ///< does nothing
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+};
+
+}  // namespace tactoid::mpi
+
+#endif

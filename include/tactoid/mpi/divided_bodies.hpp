@@ -1,0 +1,160 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <mpi.h>
+
+#include <tactoid/mpi/chunk_graph.hpp>
+#include <tactoid/mpi/owned_values.hpp>
+#include <tactoid/mpi/parcels.hpp>
+#include <tactoid/mpi/part_of_body.hpp>
+#include <tactoid/simulation/decomposition.hpp>
+
+namespace tactoid::mpi {
+
+/// The bodies of a simulation, divided among ranks. Every rank has composed all of them; rank 0 partitions.
+class DividedBodies final : public Decomposition {
+ public:
+  /// Collective. Throws ParameterError on all ranks where these have not composed the same bodies.
+  DividedBodies(Ranks& ranks, MPI_Comm comm, std::vector<SharedBody> bodies, const Partitioner& partitioner)
+      : ranks_(ranks), comm_(comm), bodies_(std::move(bodies)) {
+    require_same_bodies();
+    std::vector<std::vector<std::vector<Index>>> touched;
+    ChunkGraph graph;
+    for (const SharedBody& body : bodies_) {
+      touched.push_back(touched_particles(*body.table));
+      add_chunks(graph, body, touched.back());
+    }
+    std::vector<int> owner(graph.size(), 0);
+    if (ranks_.rank() == 0) owner = checked(partitioner(graph, ranks_.size()), graph);
+    succeeded(MPI_Bcast(owner.data(), as_count(owner.size()), MPI_INT, 0, comm_));
+    std::size_t first = 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const auto begin = owner.begin() + static_cast<std::ptrdiff_t>(first);
+      first += touched[b].size();
+      parts_.push_back(std::make_shared<PartOfBody>(comm_, bodies_[b], std::vector<int>(begin, owner.begin() + static_cast<std::ptrdiff_t>(first)), touched[b]));
+      sums_.emplace_back(comm_, parts_.back()->particle_owner);
+      evaluated_pairs_ += parts_.back()->evaluated_pairs(*bodies_[b].table);
+    }
+    const auto is_known = [](const SharedBody& body, Index i) { return body.known_to_all[i] != 0; };
+    known_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::known, is_known));
+    whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::whole, [](const SharedBody&, Index) { return true; }));
+    find_neighbors();
+  }
+  ~DividedBodies() override { finish_exchange(); }
+
+  [[nodiscard]] std::shared_ptr<BodyShare> share(std::size_t body) const override { return parts_[body]; }
+  [[nodiscard]] const std::vector<int>& owners(std::size_t body) const override { return parts_[body]->particle_owner; }
+
+  void begin_exchange() override {
+    finish_exchange();
+    neighbors_->begin();
+    exchanging_ = true;
+    known_->begin();
+    known_->end();
+  }
+  void end_exchange() override {
+    neighbors_->end();
+    exchanging_ = false;
+  }
+  void complete() override {
+    whole_->begin();
+    whole_->end();
+  }
+  [[nodiscard]] double sum(std::size_t body, std::span<const double> terms) override { return sums_[body](terms); }
+  [[nodiscard]] std::string told_by_owner(std::size_t body, std::size_t point, const std::string& text) override {
+    const int owner = parts_[body]->point_owner[point];
+    return "rank " + std::to_string(owner) + ": " + ranks_.text_of(owner, text);
+  }
+
+  /// Pairs that this rank evaluates in every step, those that another rank evaluates, too, included.
+  [[nodiscard]] std::size_t evaluated_pairs() const { return evaluated_pairs_; }
+  /// Numbers that this rank sends to its neighbours in every step.
+  [[nodiscard]] std::size_t sent_to_neighbors() const { return neighbors_->sent(); }
+
+ private:
+  /// A hash of what every rank must have composed alike: places, gradients, and the state.
+  void require_same_bodies() {
+    std::uint64_t hash = 0xCBF29CE484222325ull;
+    const auto add = [&](std::uint64_t word) { hash = (hash ^ word) * 0x100000001B3ull, hash ^= hash >> 29; };
+    for (const SharedBody& body : bodies_) {
+      add(body.table->particles);
+      for (const double V : body.table->volume) add(std::bit_cast<std::uint64_t>(V));
+      for (const TableEntry& entry : body.table->entries) add(entry.particle), add(std::bit_cast<std::uint64_t>(entry.gradient[0]));
+      for (const Field* field : body.whole)
+        for (const Vector4& x : *field)
+          for (int k = 0; k < 3; ++k) add(std::bit_cast<std::uint64_t>(x[k]));
+    }
+    ranks_.require_same("simulation", std::to_string(hash));
+  }
+  [[nodiscard]] std::vector<int> checked(std::vector<int> owner, const ChunkGraph& graph) const {
+    const bool valid = owner.size() == graph.size() && std::all_of(owner.begin(), owner.end(), [&](int r) { return r >= 0 && r < ranks_.size(); });
+    if (!valid) throw ParameterError("A Partitioner gives a rank, from 0 on, for each chunk.");
+    return owner;
+  }
+
+  /// For each rank the particles that it owns, of those that are included.
+  template <class Include>
+  [[nodiscard]] std::vector<Parcel> parcels_of_owners(std::vector<Field*> SharedBody::*fields, const Include& include) const {
+    std::vector<Parcel> parcels(static_cast<std::size_t>(ranks_.size()));
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      for (Parcel& parcel : parcels) parcel.pieces.push_back({bodies_[b].*fields, {}});
+      for (Index i = 0; i < bodies_[b].table->particles; ++i)
+        if (include(bodies_[b], i)) parcels[static_cast<std::size_t>(parts_[b]->particle_owner[i])].pieces.back().particles.push_back(i);
+    }
+    return parcels;
+  }
+
+  /// Each rank knows what it needs, and tells the owners.
+  void find_neighbors() {
+    const auto n = static_cast<std::size_t>(ranks_.size());
+    std::vector<Parcel> in(n), out(n);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      for (std::size_t r = 0; r < n; ++r) in[r].pieces.push_back({bodies_[b].motion, {}}), out[r].pieces.push_back({bodies_[b].motion, {}});
+      const PartOfBody& part = *parts_[b];
+      for (Index i = 0; i < part.needed.size(); ++i)
+        if (part.needed[i] && part.particle_owner[i] != ranks_.rank() && !bodies_[b].known_to_all[i])
+          in[static_cast<std::size_t>(part.particle_owner[i])].pieces[b].particles.push_back(i);
+      std::vector<int> asked(n), wanted(n), asked_at(n + 1, 0), wanted_at(n + 1, 0);
+      std::vector<Index> asking;
+      for (std::size_t r = 0; r < n; ++r) {
+        const auto& list = in[r].pieces[b].particles;
+        asked[r] = as_count(list.size());
+        asked_at[r + 1] = asked_at[r] + asked[r];
+        asking.insert(asking.end(), list.begin(), list.end());
+      }
+      succeeded(MPI_Alltoall(asked.data(), 1, MPI_INT, wanted.data(), 1, MPI_INT, comm_));
+      std::partial_sum(wanted.begin(), wanted.end(), wanted_at.begin() + 1);
+      std::vector<Index> answer(static_cast<std::size_t>(wanted_at[n]) + 1);
+      static_assert(sizeof(Index) == sizeof(std::uint32_t));
+      asking.push_back(0);
+      succeeded(MPI_Alltoallv(asking.data(), asked.data(), asked_at.data(), MPI_UINT32_T, answer.data(), wanted.data(), wanted_at.data(), MPI_UINT32_T, comm_));
+      for (std::size_t r = 0; r < n; ++r) out[r].pieces[b].particles.assign(answer.begin() + wanted_at[r], answer.begin() + wanted_at[r + 1]);
+    }
+    neighbors_ = std::make_unique<ParcelsToNeighbors>(comm_, std::move(out), std::move(in));
+  }
+  /// A step that broke down may have left an exchange under way.
+  void finish_exchange() {
+    if (std::exchange(exchanging_, false)) neighbors_->end();
+  }
+
+  Ranks& ranks_;
+  MPI_Comm comm_;
+  std::vector<SharedBody> bodies_;
+  std::vector<std::shared_ptr<PartOfBody>> parts_;
+  std::vector<SumInOrder> sums_;
+  std::unique_ptr<ParcelsToAll> known_, whole_;
+  std::unique_ptr<ParcelsToNeighbors> neighbors_;
+  std::size_t evaluated_pairs_ = 0;
+  bool exchanging_ = false;
+};
+
+}  // namespace tactoid::mpi

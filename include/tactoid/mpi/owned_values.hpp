@@ -1,0 +1,125 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <mpi.h>
+
+#include <tactoid/mpi/parcels.hpp>
+
+namespace tactoid::mpi {
+
+/// Items that each belong to one rank, and numbers of them that all ranks gather.
+class OwnedValues {
+ public:
+  OwnedValues() = default;
+  /// `owner` of each item, the same on all ranks. `ranks` must outlive it.
+  OwnedValues(MPI_Comm ranks, const std::vector<int>& owner) : ranks_(ranks) {
+    int size = 1;
+    MPI_Comm_size(ranks_, &size);
+    MPI_Comm_rank(ranks_, &rank_);
+    first_.assign(static_cast<std::size_t>(size) + 1, 0);
+    for (const int r : owner) ++first_[static_cast<std::size_t>(r) + 1];
+    for (std::size_t r = 0; r + 1 < first_.size(); ++r) first_[r + 1] += first_[r];
+    items_.resize(owner.size());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < owner.size(); ++i) items_[next[static_cast<std::size_t>(owner[i])]++] = static_cast<Index>(i);
+  }
+
+  /// `width` numbers per item: those of own items in, those of all out. Collective.
+  void gather(std::span<double> values, std::size_t width) {
+    std::vector<double> own, all(std::max<std::size_t>(items_.size() * width, 1));
+    std::vector<int> counts, places;
+    for (std::size_t r = 0; r + 1 < first_.size(); ++r) {
+      counts.push_back(as_count((first_[r + 1] - first_[r]) * width));
+      places.push_back(as_count(first_[r] * width));
+    }
+    const auto me = static_cast<std::size_t>(rank_);
+    own.reserve(static_cast<std::size_t>(counts[me]) + 1);
+    for (std::size_t k = first_[me]; k < first_[me + 1]; ++k)
+      for (std::size_t j = 0; j < width; ++j) own.push_back(values[items_[k] * width + j]);
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Iallgatherv(own.data(), counts[me], MPI_DOUBLE, all.data(), counts.data(), places.data(), MPI_DOUBLE, ranks_, &request));
+    wait(request);
+    for (std::size_t k = 0; k < items_.size(); ++k) std::copy_n(all.data() + k * width, width, values.data() + items_[k] * width);
+  }
+
+ private:
+  MPI_Comm ranks_ = MPI_COMM_NULL;
+  int rank_ = 0;
+  std::vector<Index> items_;        // rank by rank
+  std::vector<std::size_t> first_;  // of each rank in items_
+};
+
+/// Sums over items that each belong to one rank, with the bits of parallel_sum: each of its parts is summed, in its order, by the
+/// rank that owns most of it, to which the other ones send their terms.
+class SumInOrder {
+ public:
+  SumInOrder() = default;
+  /// `owner` of each item, the same on all ranks. `ranks` must outlive it.
+  SumInOrder(MPI_Comm ranks, const std::vector<int>& owner) : ranks_(ranks) {
+    int size = 1, rank = 0;
+    MPI_Comm_size(ranks_, &size);
+    MPI_Comm_rank(ranks_, &rank);
+    const auto n = static_cast<std::size_t>(size);
+    const std::size_t length = (owner.size() + parts - 1) / parts;
+    sent_counts_.assign(n, 0), received_counts_.assign(n, 0);
+    std::vector<std::vector<Index>> sent(n);
+    std::vector<std::size_t> of_rank;  // owner's rank of each term that arrives here
+    for (std::size_t p = 0; p < parts; ++p) {
+      const std::size_t first = std::min(owner.size(), p * length), last = std::min(owner.size(), (p + 1) * length);
+      std::vector<std::size_t> owned(n, 0);
+      for (std::size_t i = first; i < last; ++i) ++owned[static_cast<std::size_t>(owner[i])];
+      const auto here = static_cast<std::size_t>(std::max_element(owned.begin(), owned.end()) - owned.begin());
+      const bool mine = static_cast<int>(here) == rank;
+      for (std::size_t i = first; i < last; ++i) {
+        if (owner[i] == rank) sent[here].push_back(static_cast<Index>(i));
+        if (mine) of_rank.push_back(static_cast<std::size_t>(owner[i]));
+      }
+      end_of_part_[p] = of_rank.size();
+    }
+    for (const std::size_t r : of_rank) ++received_counts_[r];
+    sent_places_ = received_places_ = std::vector<int>(n, 0);
+    for (std::size_t r = 0; r < n; ++r) {
+      sent_counts_[r] = as_count(sent[r].size());
+      if (r > 0) sent_places_[r] = sent_places_[r - 1] + sent_counts_[r - 1], received_places_[r] = received_places_[r - 1] + received_counts_[r - 1];
+      sent_.insert(sent_.end(), sent[r].begin(), sent[r].end());
+    }
+    std::vector<int> next = received_places_;
+    for (const std::size_t r : of_rank) place_.push_back(static_cast<std::size_t>(next[r]++));
+    out_.resize(sent_.size() + 1);
+    in_.resize(of_rank.size() + 1);
+  }
+
+  /// Σ terms over all items, each rank giving those that it owns. Collective.
+  [[nodiscard]] double operator()(std::span<const double> terms) {
+    for (std::size_t k = 0; k < sent_.size(); ++k) out_[k] = terms[sent_[k]];
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Ialltoallv(out_.data(), sent_counts_.data(), sent_places_.data(), MPI_DOUBLE, in_.data(), received_counts_.data(),
+                             received_places_.data(), MPI_DOUBLE, ranks_, &request));
+    wait(request);
+    std::array<double, parts> sums{};
+    for (std::size_t p = 0, k = 0; p < parts; ++p)
+      for (; k < end_of_part_[p]; ++k) sums[p] += in_[place_[k]];
+    // Adding zeros is exact.
+    succeeded(MPI_Iallreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(parts), MPI_DOUBLE, MPI_SUM, ranks_, &request));
+    wait(request);
+    double total = 0.0;
+    for (const double sum : sums) total += sum;
+    return total;
+  }
+
+ private:
+  static constexpr std::size_t parts = 64;  // of parallel_sum
+  MPI_Comm ranks_ = MPI_COMM_NULL;
+  std::vector<Index> sent_;                         // own items, by the rank that they are sent to
+  std::vector<std::size_t> place_;                  // of the terms of the parts that are summed here, in the order of the sum
+  std::array<std::size_t, parts> end_of_part_{};    // in place_
+  std::vector<int> sent_counts_, sent_places_, received_counts_, received_places_;
+  std::vector<double> out_, in_;
+};
+
+}  // namespace tactoid::mpi
