@@ -207,7 +207,7 @@ struct SurfaceTension {
     return integral.visit([&](const auto& s) { return area_stiffness_rate(s, body, tension); });
   }
 
-  /// Current area of the surface, m² (plane: length, m), at the last call of apply; tension must be positive.
+  /// Current area of the surface, m² (plane: length, m), at the last call of apply; tension must be positive. With `smoothing` a little more.
   [[nodiscard]] double area() const {
     return integral.visit([&](const auto& s) {
       double sum = 0.0;

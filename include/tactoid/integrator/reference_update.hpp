@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -40,14 +41,14 @@ struct ReferenceUpdate {
 /// A total Lagrangian description keeps the neighbours of the first configuration. A fluid has no rest shape and flows out of them: after
 /// large stretches gradients are sums of large parts that cancel, and a point is inverted at last. Here a body whose `distortion` since its last
 /// update exceeds the bound gets neighbours, shape functions and points on its present configuration (Body::update_reference):
-/// particles, masses, velocities, stresses and histories stay as they are; the stabilisation starts anew, and what is lost with it is
-/// reported, and booked in EnergyLedger::reference_updates.
+/// particles, masses, velocities, stresses and histories stay as they are; the stabilisation starts anew, the volume ratio of fluids is smoothed, and what is
+/// lost with it is reported, and booked in EnergyLedger::reference_updates.
 ///
-/// The system offers `ReferenceUpdate update_references(double distortion)`. A body that cannot be sampled anew keeps its reference, and
+/// The system offers `ReferenceUpdate update_references(double distortion)`, and `require_updatable()`, which throws ParameterError. A body that cannot be sampled anew keeps its reference, and
 /// is asked again when it is distorted a tenth more.
 template <class Inner>
 struct UpdatedReference : Inner {
-  double distortion = 2.0;   ///< stretch (or its inverse) of any point since the last update that calls for one; > 1
+  double distortion = 2.0;   ///< stretch (or its inverse) of any point since the last update that calls for one; > 1, infinite: never
   int interval = 10;         ///< steps between two looks at it, >= 1
   ReferenceReport reference{};  ///< set by the steps
   int since = 0;                ///< steps since the last look
@@ -58,6 +59,7 @@ struct UpdatedReference : Inner {
   void initialize(System& system) {
     if (!(distortion > 1.0)) reject("UpdatedReference.distortion", distortion, "", "above 1");
     if (interval < 1) reject("UpdatedReference.interval", interval, "", "at least 1");
+    if (std::isfinite(distortion)) system.require_updatable();
     reference = {};
     since = 0;
     bound = distortion;
@@ -68,14 +70,15 @@ struct UpdatedReference : Inner {
   template <class System>
   void step(System& system, double until) {
     Inner::step(system, until);
-    if (++since < interval) return;
+    if (!std::isfinite(distortion) || ++since < interval) return;
     since = 0;
     const ReferenceUpdate update = system.update_references(bound);
     reference.updates += update.updates;
     reference.lost_energy += update.lost_energy;
     reference.largest_distortion = std::max(reference.largest_distortion, update.distortion);
     if (!update.refused.empty()) ++reference.refused;
-    bound = update.refused.empty() ? distortion : std::max(bound, 1.1 * update.distortion);
+    if (!update.refused.empty()) bound = std::max(bound, 1.1 * update.distortion);
+    else if (update.updates > 0) bound = distortion;
   }
 
   /// For checkpoints: the state of `Inner`, and what was counted.

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -34,7 +35,16 @@ class DividedBodies final : public Decomposition {
       add_chunks(graph, body, touched.back());
     }
     std::vector<int> owner(graph.size(), 0);
-    if (ranks_.rank() == 0) owner = checked(partitioner(graph, ranks_.size()), graph);
+    std::string failure;
+    if (ranks_.rank() == 0) {
+      try {
+        owner = checked(partitioner(graph, ranks_.size()), graph);
+      } catch (const std::exception& error) {  // all ranks shall know
+        failure = error.what();
+      }
+    }
+    failure = ranks_.text_of(0, failure);
+    if (!failure.empty()) throw ParameterError(failure);
     succeeded(MPI_Bcast(owner.data(), as_count(owner.size()), MPI_INT, 0, comm_));
     std::size_t first = 0;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {

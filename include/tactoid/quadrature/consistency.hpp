@@ -130,7 +130,9 @@ class AffineResidual {
 /// Fits boundary integrals b_I (m²) to the volumes of a table, by the least change that makes them integrals of affine fields,
 ///   Σ_I b_I = 0,   Σ_I b_I ⊗ X_I = Σ_q V_q 1,
 /// without which the column conditions of make_consistent have no solution. `normals` are ∮ N_I n dA: where they vanish, inside, nothing
-/// changes; elsewhere by (α + A X_I) |normal_I|. Exact nodal volumes need no fit.
+/// changes; elsewhere by (α + A X_I) |normal_I|. Exact nodal volumes need no fit. (One fit for the
+/// whole cloud: a body in several pieces needs exact volumes.) Throws GeometryError where the facets enclose a volume that is more than
+/// 5 % off: then they are no longer the surface of the body.
 template <int D>
 void fit_boundary(const PointTable& table, const std::vector<Point<D>>& normals, Field& boundary) {
   constexpr int n = D + 1;
@@ -143,6 +145,11 @@ void fit_boundary(const PointTable& table, const std::vector<Point<D>>& normals,
   middle /= total;
   for (const Vector4& X : table.particle_position) length = std::max(length, (X.head<3>() - middle).norm());
   for (const double V : table.volume) volume += V;
+  double enclosed = 0.0;
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    enclosed += boundary[i].template head<D>().dot((table.particle_position[i].template head<3>() - middle).template head<D>()) / D;
+  if (!(std::abs(enclosed / volume - 1.0) < 0.05))
+    throw GeometryError(fmt::format("The facets enclose {:.4g} times the volume of the points: they have folded, or points have left them.", enclosed / volume));
   using Row = Eigen::Matrix<double, n, 1>;
   const auto monomials = [&](std::size_t i) {
     Row p;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <limits>
 #include <memory>
 #include <string>
@@ -14,6 +15,7 @@
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/director/all.hpp>
+#include <tactoid/geometry/measures.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
 #include <tactoid/geometry/validate.hpp>
@@ -140,7 +142,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   [[nodiscard]] const std::vector<double>& nodal_volumes() const { return volumes_; }    ///< reference, m³
   [[nodiscard]] const ParticleValues& particle_values() const { return particle_values_; }  ///< from unknowns to values at the particles
   [[nodiscard]] std::size_t size() const { return table_.particles; }                    ///< number of particles
-  /// Positions X_I of the first configuration, m.
+  /// Positions X_I of the first configuration, m. Not to be held across an update of the reference.
   [[nodiscard]] const Field& reference() const { return earlier_.empty() ? table_.particle_position : earlier_.position; }
   /// Volume of a quadrature point in the first configuration, m³: what laws and densities are per.
   [[nodiscard]] double point_volume(std::size_t q) const { return earlier_.empty() ? table_.volume[q] : earlier_.volume[q]; }
@@ -200,11 +202,12 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
 
   /// Takes the present configuration as that on which neighbours, shape functions and points are defined. Particles, masses, velocities, the
   /// positions of points between their particles, and the laws with all that they remember (stress, energy, histories) are
-  /// carried over as they are, so that mass and momentum are kept to the bit, and the elastic energy is. Only the stabilisation starts
-  /// anew: its energy is lost. `displacement` still counts from the first configuration. Forces are those of the table
+  /// carried over as they are, so that mass and momentum are kept to the bit, and the elastic energy of solids is. The stabilisation starts
+  /// anew: its energy is lost. The volume ratio of fluids (regions whose laws have no shear_modulus) is smoothed. `displacement` still counts from the first configuration. Forces are those of the table
   /// before until they are evaluated again. Throws GeometryError or ComputationError where the quadrature cannot sample the present
-  /// configuration, and ParameterError for a periodic cloud; the body is then as it was.
+  /// configuration, and ParameterError for a periodic cloud and where several processes share the body; it is then as it was.
   void update_reference() {
+    require_whole();
     static_assert(requires(const QuadratureType& q, const std::vector<NodalCell<dimension>>& cells) { { q.build_moved(cloud_, kernel_, cells) } -> std::same_as<PointTable>; },
                   "The reference of a body can be updated if its quadrature has build_moved(cloud, kernel, cells), as NodalCentroids.");
     const Field u = displacement_in_table();
@@ -228,7 +231,11 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       for (const auto& law : region.laws) stiffest = std::max(stiffest, shear_modulus(law));
       if (stiffest == 0.0) smooth_volume_ratio(table_, region.begin, region.end, earlier);
     });
-    for (std::size_t q = 0; q < cells.size(); ++q) cells[q].volume = earlier.volume[q] * determinant(earlier.gradient[q]);
+    for (std::size_t q = 0; q < cells.size(); ++q) {
+      cells[q].volume = earlier.volume[q] * determinant(earlier.gradient[q]);
+      if (!(cells[q].volume > 0.0))
+        throw GeometryError(fmt::format("Body \"{}\": the reference cannot be updated, the volume ratio around particle {} jumps too much.", name_, table_.owner[q]));
+    }
     PointTable table = quadrature_.build_moved(cloud, kernel_, cells);
     earlier_ = std::move(earlier);
     adopt(std::move(table));
@@ -420,6 +427,10 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     for (Index q = 0; q < table_.points(); ++q) longest_row_ = std::max(longest_row_, table_.row(q).size());
   }
 
+  void require_whole() const {
+    if (share_) throw ParameterError("Body \"" + name_ + "\": several processes share it, and so it keeps its reference.");
+  }
+
   /// Goes on with a table of the same points on another reference.
   void adopt(PointTable table) {
     table_ = std::move(table);
@@ -445,6 +456,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       if (particles.empty() && !earlier_.empty())
         throw ParameterError("Body \"" + name_ + "\": a state before an update of the reference cannot be restored after it; compose the simulation anew.");
       if (particles.empty()) return;
+      require_whole();
       earlier.position = reference();
       PointCloud<dimension> cloud = cloud_;
       std::vector<NodalCell<dimension>> cells(points.size());

@@ -300,9 +300,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void evaluate() { evaluate(false); }
 
   /// Updates the reference of every body that is distorted by more than `distortion` (Body::distortion) and evaluates the forces anew.
-  /// Nothing moves, and time stands still. Bodies need a value-based quadrature. Throws ParameterError where several processes share them.
+  /// Nothing moves, and time stands still. Bodies need a quadrature with build_moved, such as NodalCentroids; see require_updatable().
   ReferenceUpdate update_references(double distortion) {
-    if (decomposition_) throw ParameterError("UpdatedReference: bodies that several processes share keep their reference; run it on one.");
     ReferenceUpdate done;
     for_each_body([&](auto& body, std::size_t b) {
       const double present = body.distortion();
@@ -322,12 +321,24 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
     if (done.updates == 0) return done;
     const double before = ledger_.total();
+    std::array<Field, body_count> velocities;  // at the present instant, which the forces of the table before have told
+    for (std::size_t b = 0; b < body_count; ++b) velocities[b] = fields_[b].velocity;
     const StepEnergies energies = forces(evaluated_, time_, 0.0);
     for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
+    for (std::size_t b = 0; b < body_count; ++b) fields_[b].velocity = std::move(velocities[b]);
     take_stored(energies);
     done.lost_energy = before - ledger_.total();
     ledger_.reference_updates += done.lost_energy;
     return done;
+  }
+
+  /// Throws ParameterError where references cannot be updated: in periodic boxes, and of bodies that several processes share.
+  void require_updatable() const {
+    if (Ranks::current != nullptr && Ranks::current->size() > 1)
+      throw ParameterError("UpdatedReference: bodies that several processes share keep their reference; run it on one, or without.");
+    for_each_body([](const auto& body, std::size_t) {
+      if (!body.cloud().period.isZero()) throw ParameterError("UpdatedReference: body \"" + body.name() + "\" is periodic, and keeps its reference.");
+    });
   }
 
   // --- what an implicit integrator uses ----------------------------------------------------------------------
@@ -509,7 +520,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     const std::size_t q = body.failed_point();
     if (q == body.table().points()) return;
     const Index particle = body.table().owner[q];
-    const Vector3 X = body.table().position[q];
+    const Vector3 X = body.reference()[particle].template head<3>();
     const Vector4& u = body.displacement[particle];
     bool finite = u.allFinite();
     for (const TableEntry& entry : body.table().row(q)) finite = finite && body.displacement[entry.particle].allFinite();

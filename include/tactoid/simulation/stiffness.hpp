@@ -11,6 +11,7 @@
 #include <tactoid/material/tangent.hpp>
 #include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/quadrature/rows.hpp>
+#include <tactoid/simulation/earlier_configuration.hpp>
 #include <tactoid/simulation/row_operations.hpp>
 
 namespace tactoid {
