@@ -356,6 +356,7 @@ TEST_CASE("A simulation with updates goes on with the same bits after a restart 
     set_thread_count(before);
   };
   auto whole = compose();
+  run(whole, 14e-8, 1);  // a run hits its end exactly, and so a step may differ by round-off
   run(whole, 24e-8, 1);
   REQUIRE(whole.integrator().reference.updates >= 3);
   auto part = compose();
