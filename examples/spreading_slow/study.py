@@ -46,6 +46,12 @@ def exponent(case, first, last):
     return float(np.polyfit(np.log(t[chosen]), np.log(r[chosen]), 1)[0])
 
 
+def early_end(case):
+    """When a run that was not completed came to its end."""
+    last = case.history["time"][-1] if case.history is not None and len(case.history["time"]) else float("nan")
+    return f"ends at {last:.3g} s"
+
+
 def report(folder):
     text = "![Contact radius against time](spreading_slow/slow.png)\n\n"
     pairs = [(Case(folder / "explicit", e), Case(folder / "implicit", i)) for e, i in zip(EXPLICIT, IMPLICIT)]
@@ -76,14 +82,12 @@ def report(folder):
     rows = []
     for a in ACTIVITIES:
         case = Case(folder / "activity", [("activity", a)])
-        end = case.history["time"][-1] if case.history is not None and len(case.history["time"]) else float("nan")
-        rows.append([a, "60 s" if case.completed else f"ends at {end:.3g} s", number(2.0 * 10.0 / abs(float(a.replace("kPa", "e3").replace("Pa", ""))), 2)])
+        rows.append([a, "60 s" if case.completed else early_end(case), number(2.0 * 10.0 / abs(float(a.replace("kPa", "e3").replace("Pa", ""))), 2)])
     text += "**Active stress** at 10 Pa s, and 2μ/|ζ|, s, the time in which it draws the gel out by its own length:\n\n" + table(["ζ", "", "2μ/abs(ζ)"], rows) + "\n"
     rows = [["as above", *(number(cases["10kPa", "tethers"].at("spread_area", t) * UM**2, 4) for t in (1.0, 5.0, 30.0, 60.0)), ""]]
     for name, options in CHECKS.items():
         case = Case(folder / "check", options)
-        end = case.history["time"][-1] if case.history is not None and len(case.history["time"]) else float("nan")
-        rows.append([name, *(number(case.at("spread_area", t) * UM**2, 4) for t in (1.0, 5.0, 30.0, 60.0)), "" if case.completed else f"ends at {end:.3g} s"])
+        rows.append([name, *(number(case.at("spread_area", t) * UM**2, 4) for t in (1.0, 5.0, 30.0, 60.0)), "" if case.completed else early_end(case)])
     text += "**Numerics**, on 10 kPa with tethers: area, µm², with a reference that is updated at a stretch of 1.5, of 1.25, or never, and on a finer mesh:\n\n"
     text += table(["", "1 s", "5 s", "30 s", "1 min", ""], rows) + "\n"
     rows = [[f"resolution {dict(options)['resolution']}", *(number(Case(folder / "bonds", options).at("spread_area", t) * UM**2, 4) for t in (5.0, 10.0, 20.0))] for options in BONDS_ALONE]
