@@ -2,8 +2,8 @@
 
 # What every build needs.
 build_packages=(g++ make cmake libeigen3-dev libnanoflann-dev libfmt-dev libcli11-dev libtomlplusplus-dev libhdf5-dev zlib1g-dev)
-# And what the tests need for several processes.
-mpi_packages=(libopenmpi-dev openmpi-bin libmetis-dev)
+# And what the tests need for several processes, and for the solvers of SuiteSparse.
+optional_packages=(libopenmpi-dev openmpi-bin libmetis-dev libsuitesparse-dev)
 
 install_packages() {
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

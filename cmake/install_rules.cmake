@@ -23,6 +23,11 @@ if(TACTOID_WITH_MPI)
   install(EXPORT tactoidMpiTargets NAMESPACE tactoid:: DESTINATION "${tactoid_package_dir}")
   install(FILES "${CMAKE_CURRENT_LIST_DIR}/FindMETIS.cmake" DESTINATION "${tactoid_package_dir}")
 endif()
+if(TACTOID_HAVE_SUITESPARSE)
+  install(TARGETS tactoid_suitesparse EXPORT tactoidSuiteSparseTargets)
+  install(EXPORT tactoidSuiteSparseTargets NAMESPACE tactoid:: DESTINATION "${tactoid_package_dir}")
+  install(FILES "${CMAKE_CURRENT_LIST_DIR}/FindSuiteSparse.cmake" DESTINATION "${tactoid_package_dir}")
+endif()
 install(
   EXPORT tactoidTargets
   NAMESPACE tactoid::

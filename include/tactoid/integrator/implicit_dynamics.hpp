@@ -9,13 +9,12 @@
 #include <type_traits>
 #include <vector>
 
-#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/unsatisfied.hpp>
 #include <tactoid/integrator/gmres.hpp>
+#include <tactoid/integrator/sparse_solvers.hpp>
 
 namespace tactoid {
 
@@ -88,17 +87,6 @@ struct ImplicitReport {
 
 /// What ImplicitDynamics keeps from step to step.
 struct ImplicitPast {
-  /// The inverse of a tangent, whole or in part.
-  struct Inverse {
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;  ///< whole
-    Eigen::IncompleteLUT<double> ilu;                 ///< in part
-    bool whole = true;                                ///< which of them
-    /// Its product with x.
-    [[nodiscard]] Eigen::VectorXd apply(const Eigen::VectorXd& x) const {
-      if (whole) return lu.solve(x);
-      return ilu.solve(x);
-    }
-  };
   Eigen::VectorXd z;                     ///< unknowns of the present state
   Eigen::VectorXd z_before;              ///< of the state before
   Eigen::VectorXd rate;                  ///< rates of the present state
@@ -106,7 +94,7 @@ struct ImplicitPast {
   double last_step = 0.0;                ///< between the two, s; 0 at the start
   double next_step = 0.0;                ///< that will be tried, s
   Eigen::SparseMatrix<double> matrix;    ///< a tangent
-  std::shared_ptr<Inverse> inverse;      ///< of `matrix`
+  std::shared_ptr<const LinearInverse> inverse;  ///< of `matrix`, whole or in part
   double factor_rate = 0.0;              ///< rate factor of `matrix`, 1/s
   int last_linear_iterations = 0;        ///< of GMRES
   ImplicitReport report;                 ///< since the start
@@ -276,7 +264,7 @@ struct ImplicitDynamics {
       if (!columns.empty()) {
         const auto n = static_cast<Eigen::Index>(columns.size()) - 1;
         past.matrix = Eigen::Map<const Eigen::SparseMatrix<double>>(n, n, static_cast<Eigen::Index>(values.size()), columns.data(), rows.data(), values.data());
-        factorize();
+        factorize(past.matrix);
       }
     }
   }
@@ -335,7 +323,7 @@ struct ImplicitDynamics {
       past.matrix.makeCompressed();
       past.factor_rate = formula.factor;
       ++past.report.factorizations;
-      return factorize();
+      return factorize(past.matrix);
     };
     const bool direct = solver == ImplicitSolver::direct;
     const double change = past.factor_rate > 0.0 ? formula.factor / past.factor_rate : 0.0;
@@ -410,21 +398,12 @@ struct ImplicitDynamics {
     return share * difference.cwiseQuotient(scale).cwiseAbs().maxCoeff();
   }
 
-  bool factorize() {
-    past.inverse = std::make_shared<ImplicitPast::Inverse>();
-    past.inverse->whole = solver == ImplicitSolver::direct || preconditioner == Preconditioner::factorization;
-    bool done;
-    if (past.inverse->whole) {
-      past.inverse->lu.compute(past.matrix);
-      done = past.inverse->lu.info() == Eigen::Success;
-    } else {
-      past.inverse->ilu.setDroptol(1e-4);
-      past.inverse->ilu.setFillfactor(10);
-      past.inverse->ilu.compute(past.matrix);
-      done = past.inverse->ilu.info() == Eigen::Success;
-    }
-    if (!done) past.inverse.reset();
-    return done;
+  /// A template, so that programs without implicit steps do not compile factorisations.
+  template <class Matrix>
+  bool factorize(const Matrix& matrix) {
+    const bool whole = solver == ImplicitSolver::direct || preconditioner == Preconditioner::factorization;
+    past.inverse = whole ? factorize_lu(matrix) : factorize_incomplete(matrix);
+    return past.inverse != nullptr;
   }
 
   Attempt fail(Attempt& attempt, const char* cause) {

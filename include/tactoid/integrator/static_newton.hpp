@@ -7,13 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/unsatisfied.hpp>
 #include <tactoid/integrator/projected_conjugate_gradients.hpp>
+#include <tactoid/integrator/sparse_solvers.hpp>
 
 namespace tactoid {
 
@@ -269,26 +268,28 @@ struct StaticNewton {
   template <class Matrix>
   static bool solve_linear(const Matrix& A, const Eigen::VectorXd& right, Eigen::VectorXd& x,
                            StaticReport& report) {
-    if (symmetric(A)) {
-      const Eigen::SimplicialLDLT<Matrix> ldlt(A);
-      if (ldlt.info() == Eigen::Success && ldlt.vectorD().minCoeff() > 0.0) {
-        x = ldlt.solve(right);
-        x += ldlt.solve(right - A * x);
+    if (symmetric(A))
+      if (const auto inverse = factorize_cholesky(A)) {
+        x = refined(*inverse, A, right);
         return true;
       }
-    }
     return solve_lu(A, right, x, report);
   }
 
   template <class Matrix>
   static bool solve_lu(const Matrix& A, const Eigen::VectorXd& right, Eigen::VectorXd& x, StaticReport& report) {
     report.factorized_lu = true;
-    Eigen::SparseLU<Matrix> lu;
-    lu.compute(A);
-    if (lu.info() != Eigen::Success) return false;
-    x = lu.solve(right);
-    x += lu.solve(right - A * x);
+    const auto inverse = factorize_lu(A);
+    if (!inverse) return false;
+    x = refined(*inverse, A, right);
     return true;
+  }
+
+  template <class Matrix>
+  static Eigen::VectorXd refined(const LinearInverse& inverse, const Matrix& A, const Eigen::VectorXd& right) {
+    Eigen::VectorXd x = inverse.apply(right);
+    x += inverse.apply(right - A * x);
+    return x;
   }
 
   [[noreturn]] static void fail(double fraction, int iteration, double residual,
