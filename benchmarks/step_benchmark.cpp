@@ -21,23 +21,25 @@ void steps(benchmark::State& state, Simulation& simulation) {
     state.SkipWithError("an iteration was not one step");
 }
 
+template <class Real>
 void cell_on_substrate(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(0)));
   const SpreadingParameters p;
-  auto simulation = SpreadingCase{p, p.substrate_law(10.0)}.simulation();
+  auto simulation = SpreadingCase<decltype(p.substrate_law(10.0)), 3, NothingAdded, Real>{p, p.substrate_law(10.0)}.simulation();
   steps(state, simulation);
-  const auto& cell = simulation.body<0>();
-  const auto& substrate = simulation.body<1>();
+  const auto& cell = simulation.template body<0>();
+  const auto& substrate = simulation.template body<1>();
   state.counters["bytes_per_particle"] = static_cast<double>(cell.memory() + substrate.memory()) /
                                          static_cast<double>(cell.size() + substrate.size());
 }
 
-/// A cube of `edge`³ particles with about 50 neighbours each.
+/// A cube of `edge`³ particles with about 50 neighbours each, with gradients stored as Real.
+template <class Real>
 auto block(std::int64_t edge, double stabilization) {
   const int cells = static_cast<int>(edge) - 1;
   const double size = 1e-2;
   Body body{"block", box({.size = {size, size, size}, .cells = {cells, cells, cells}}), Rkpm<3>{.support = 2.35},
-            NodalCentroids{.solid_ratio = stabilization}, Materials{Region{"body", NeoHookean::from_young(1e6, 0.3)}}};
+            stored_as<Real>(NodalCentroids{.solid_ratio = stabilization}), Materials{Region{"body", NeoHookean::from_young(1e6, 0.3)}}};
   for (std::size_t i = 0; i < body.size(); ++i) {
     const double z = body.cloud().positions[i][2] / size;
     body.velocity[i][0] = 0.1 * z * z;
@@ -45,19 +47,23 @@ auto block(std::int64_t edge, double stabilization) {
   return body;
 }
 
-void elastic_block(benchmark::State& state, double stabilization) {
+enum Stabilized { plain, stabilized };
+template <class Real, Stabilized Choice>
+void elastic_block(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(1)));
-  Simulation simulation{Bodies{block(state.range(0), stabilization)}, Contacts{}, Boundaries{}, CentralDifference{}};
+  Simulation simulation{Bodies{block<Real>(state.range(0), Choice == stabilized ? 0.1 : 0.0)}, Contacts{}, Boundaries{}, CentralDifference{}};
   steps(state, simulation);
-  describe(state, simulation.body<0>());
+  describe(state, simulation.template body<0>());
 }
 
 /// What no step can do without: per point one sweep over its row to gather F, something linear in the place of a stress, one
 /// sweep to scatter it. In the order of the points, by each thread into forces of its own, which are then added up; no law, no
 /// stabilisation, no energies, no time step. Steps are given as ratios to it.
+template <class Real>
 void bare_sweep(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(1)));
-  const Body body = block(state.range(0), 0.0);
+  const Body body = block<Real>(state.range(0), 0.0);
+  using Entry = typename std::decay_t<decltype(body)>::Entry;
   const PointTable& table = body.table();
   const std::size_t n = table.particles, threads = static_cast<std::size_t>(state.range(1));
   const Field displacement(n, Vector4(1e-6, 2e-6, 3e-6, 0.0));
@@ -65,10 +71,13 @@ void bare_sweep(benchmark::State& state) {
   std::vector<Field> own(threads, force);
   const auto sweep = [&](std::size_t thread) {
     Field& f = own[thread];
+    std::vector<TableEntry> unpacked(1000);
     std::fill(f.begin(), f.end(), Vector4::Zero());
     for (std::size_t q = table.points() * thread / threads; q < table.points() * (thread + 1) / threads; ++q) {
       Quad even[3] = {}, odd[3] = {};
-      const auto row = table.row(q);
+      std::span<const TableEntry> row;
+      if constexpr (std::is_same_v<Entry, TableEntry>) row = table.stored_row<Entry>(q);
+      else row = rows::unpack(table.stored_row<Entry>(q), unpacked.data());
       for (std::size_t k = 0; k < row.size(); k += 2)
         for (int K = 0; K < 3; ++K) {
           even[K] += row[k].gradient[K] * quad(displacement[row[k].particle].data());
@@ -91,13 +100,17 @@ void bare_sweep(benchmark::State& state) {
           {{"ns_per_pair", table.pairs()}, {"ns_per_particle", n}});
 }
 
-BENCHMARK(cell_on_substrate)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(cell_on_substrate<double>)->Name("cell_on_substrate")->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(cell_on_substrate<float>)->Name("cell_on_substrate/single")->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
 void sizes(benchmark::internal::Benchmark* b) {
   b->ArgNames({"edge", "threads"})->ArgsProduct({{27, 54, 100}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
 }
-BENCHMARK(bare_sweep)->Apply(sizes);
-BENCHMARK_CAPTURE(elastic_block, plain, 0.0)->Apply(sizes);
-BENCHMARK_CAPTURE(elastic_block, stabilized, 0.1)->Apply(sizes);
+BENCHMARK(bare_sweep<double>)->Name("bare_sweep")->Apply(sizes);
+BENCHMARK(bare_sweep<float>)->Name("bare_sweep/single")->Apply(sizes);
+BENCHMARK(elastic_block<double, plain>)->Name("elastic_block/plain")->Apply(sizes);
+BENCHMARK(elastic_block<double, stabilized>)->Name("elastic_block/stabilized")->Apply(sizes);
+BENCHMARK(elastic_block<float, plain>)->Name("elastic_block/plain/single")->Apply(sizes);
+BENCHMARK(elastic_block<float, stabilized>)->Name("elastic_block/stabilized/single")->Apply(sizes);
 
 }  // namespace
 

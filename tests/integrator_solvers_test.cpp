@@ -4,10 +4,12 @@
 
 #include <tactoid/integrator/sparse_solvers.hpp>
 
+namespace integrator_solvers_test {
+
 using namespace tactoid;
 using Matrix = Eigen::SparseMatrix<double>;
 
-namespace solvers_tests {
+namespace {
 
 /// −∇² + drift ∂/∂x on n × n points, by second-order differences; each value times a weight that varies over four decades.
 Matrix transport(int n, double drift, bool scaled) {
@@ -79,4 +81,6 @@ TEST_CASE("incomplete factors nearly invert, where the diagonal does not") {
   CHECK(residual < 0.5 * jacobi);
 }
 
-}  // namespace solvers_tests
+}  // namespace
+
+}  // namespace integrator_solvers_test

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,26 +28,31 @@ inline constexpr std::size_t first_added_contact = 3;
 
 /// The cell of the paper on its substrate: how the spreading examples and the benchmarks compose it.
 /// `substrate_law`: a law or Graded, as SpreadingParameters::substrate_law gives it. D = 2: in the meridian section, with
-/// `substrate_law` a function of that place. `added`: more contacts and columns, such as NothingAdded.
-template <MaterialSource Law, int D = 3, class Added = NothingAdded>
+/// `substrate_law` a function of that place. `added`: more contacts and columns, such as NothingAdded. Real: double, or
+/// float for gradients that are stored in single precision.
+template <MaterialSource Law, int D = 3, class Added = NothingAdded, class Real = double>
 struct SpreadingCase {
   SpreadingParameters p;
   Law substrate_law;
   Added added = {};
 
+  [[nodiscard]] auto quadrature() const {
+    if constexpr (std::is_same_v<Real, double>) return p.quadrature();
+    else return stored_as<Real>(p.quadrature());
+  }
   [[nodiscard]] auto cell() const {
     PointCloud<D> cloud = p.cell_cloud<D>();
     Field director = p.director_field(cloud);
     return Body{"cell",
                 std::move(cloud),
                 Rkpm<D>{.support = p.support},
-                p.quadrature(),
+                quadrature(),
                 Materials{Region{"nucleus", p.nucleus_law()}, Region{"cytoplasm", p.cytoplasm_law()}},
                 DirectorField<>{.diffusivity = p.diffusivity, .core_size = p.core_size},
                 std::move(director)};
   }
   [[nodiscard]] auto substrate() const {
-    return Body{"substrate", p.substrate_cloud<D>(), Rkpm<D>{.support = p.support}, p.quadrature(),
+    return Body{"substrate", p.substrate_cloud<D>(), Rkpm<D>{.support = p.support}, quadrature(),
                 Materials{Region{"body", substrate_law}}};
   }
   /// Everything on: both contacts, anchoring, what is added, surface tension, the fixed bottom.

@@ -32,7 +32,7 @@ using Partitioner = std::function<std::vector<int>(const ChunkGraph& graph, int 
   std::vector<std::vector<Index>> touched(table.chunks.size());
   for (std::size_t c = 0; c < table.chunks.size(); ++c) {
     auto& list = touched[c];
-    for (std::size_t e = table.offsets[table.chunks[c].begin]; e < table.offsets[table.chunks[c].end]; ++e) list.push_back(table.entries[e].particle);
+    for (std::size_t e = table.offsets[table.chunks[c].begin]; e < table.offsets[table.chunks[c].end]; ++e) list.push_back(table.entry(e).particle);
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }

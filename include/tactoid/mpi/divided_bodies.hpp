@@ -98,7 +98,10 @@ class DividedBodies final : public Decomposition {
     for (const SharedBody& body : bodies_) {
       add(body.table->particles);
       for (const double V : body.table->volume) add(std::bit_cast<std::uint64_t>(V));
-      for (const TableEntry& entry : body.table->entries) add(entry.particle), add(std::bit_cast<std::uint64_t>(entry.gradient[0]));
+      for (std::size_t e = 0; e < body.table->size(); ++e) {
+        const TableEntry entry = body.table->entry(e);
+        add(entry.particle), add(std::bit_cast<std::uint64_t>(entry.gradient[0]));
+      }
       for (const Field* field : body.whole)
         for (const Vector4& x : *field)
           for (int k = 0; k < 3; ++k) add(std::bit_cast<std::uint64_t>(x[k]));

@@ -65,7 +65,7 @@ class PartOfBody final : public BodyShare {
 
   void drop_rows(PointTable& table) const override {
     if (keep_rows_) return;
-    const std::size_t pairs = table.entries.size();
+    const std::size_t pairs = table.size();
     const std::vector<std::size_t> rows = std::exchange(table.offsets, {0}), bonds = table.bond_offsets;
     table.offsets.reserve(rows.size());
     if (!bonds.empty()) table.bond_offsets.assign(1, 0);
@@ -73,7 +73,8 @@ class PartOfBody final : public BodyShare {
     for (std::size_t q = 0; q + 1 < rows.size(); ++q) {
       if (evaluated[q]) {
         for (std::size_t e = rows[q]; e < rows[q + 1]; ++e, ++kept) {
-          table.entries[kept] = table.entries[e];
+          if (table.single_entries.empty()) table.entries[kept] = table.entries[e];
+          else table.single_entries[kept] = table.single_entries[e];
           if (!table.point_values.empty()) table.point_values[kept] = table.point_values[e];
         }
         if (!bonds.empty())
@@ -82,8 +83,9 @@ class PartOfBody final : public BodyShare {
       table.offsets.push_back(kept);
       if (!bonds.empty()) table.bond_offsets.push_back(kept_bonds);
     }
-    table.entries.resize(kept);
+    (table.single_entries.empty() ? table.entries.resize(kept) : table.single_entries.resize(kept));
     table.entries.shrink_to_fit();
+    table.single_entries.shrink_to_fit();
     if (!table.point_values.empty()) table.point_values.resize(kept);
     table.point_values.shrink_to_fit();
     if (!bonds.empty()) table.bond_weights.resize(kept_bonds);

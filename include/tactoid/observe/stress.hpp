@@ -42,7 +42,7 @@ template <class Body>
       add(table.owner[q], body.point_volume(q));
     } else {
       for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
-        add(table.entries[e].particle, table.volume[q] * std::max(0.0, table.point_values[e]));
+        add(table.entry(e).particle, table.volume[q] * std::max(0.0, table.point_values[e]));
     }
   }
   for (std::size_t i = 0; i < body.size(); ++i) {

@@ -7,3 +7,4 @@
 #include <tactoid/quadrature/particle_values.hpp>
 #include <tactoid/quadrature/point_table.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
+#include <tactoid/quadrature/stored.hpp>

@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <tactoid/core/tensor.hpp>
@@ -14,6 +17,53 @@ struct alignas(32) TableEntry {
   double gradient[3] = {0.0, 0.0, 0.0};  ///< ∇₀φ_I(X_q), or the value-based operator G_qI; 1/m. In a meridian section the
                                          ///< third one is φ_I(X_q)/R_q, which gives the parts around the axis
   Index particle = 0;                    ///< I
+};
+
+/// The same in half the bytes, for bodies that store gradients in single precision (quadrature/stored.hpp).
+struct alignas(16) SingleTableEntry {
+  float gradient[3] = {0.0F, 0.0F, 0.0F};  ///< 1/m, as in TableEntry
+  Index particle = 0;                      ///< I
+  /// In double precision.
+  operator TableEntry() const { return {{double(gradient[0]), double(gradient[1]), double(gradient[2])}, particle}; }
+};
+
+/// The entries of one point, in whichever precision they are stored; outside of the hot path.
+class TableRow {
+ public:
+  /// `size` entries from one of the two on; the other is null.
+  TableRow(const TableEntry* entries, const SingleTableEntry* single_entries, std::size_t size)
+      : entries_(entries), single_entries_(single_entries), size_(size) {}
+  [[nodiscard]] std::size_t size() const { return size_; }   ///< with the padding
+  [[nodiscard]] bool empty() const { return size_ == 0; }    ///< also where other processes evaluate it
+  /// Entry number k, in double precision.
+  [[nodiscard]] TableEntry operator[](std::size_t k) const { return single_entries_ != nullptr ? TableEntry(single_entries_[k]) : entries_[k]; }
+
+  /// Goes through the entries, by value.
+  class Iterator {
+   public:
+    using difference_type = std::ptrdiff_t;                ///< of numbers
+    using value_type = TableEntry;                         ///< in double precision
+    using iterator_category = std::input_iterator_tag;     ///< entries are made when they are asked for
+    using pointer = const TableEntry*;                     ///< there is none
+    using reference = TableEntry;                          ///< a value
+    Iterator() = default;
+    Iterator(const TableRow& row, std::size_t k) : row_(&row), k_(k) {}  ///< at entry k
+    TableEntry operator*() const { return (*row_)[k_]; }  ///< the entry
+    Iterator& operator++() { return ++k_, *this; }        ///< to the next one
+    Iterator operator++(int) { return {*row_, k_++}; }    ///< to the next one
+    bool operator==(const Iterator& other) const { return k_ == other.k_; }  ///< the same place
+
+   private:
+    const TableRow* row_ = nullptr;
+    std::size_t k_ = 0;
+  };
+  [[nodiscard]] Iterator begin() const { return {*this, 0}; }    ///< the first entry
+  [[nodiscard]] Iterator end() const { return {*this, size_}; }  ///< beyond the last one
+
+ private:
+  const TableEntry* entries_;
+  const SingleTableEntry* single_entries_;
+  std::size_t size_;
 };
 
 /// Compressed rows of (particle, value) pairs: a linear map from the unknowns to values.
@@ -50,6 +100,8 @@ struct PointTable {
   std::vector<std::size_t> offsets;  ///< row of q: entries[offsets[q]] .. entries[offsets[q + 1] - 1]
   std::vector<TableEntry> entries;   ///< rows are padded to an even length with entries of zero gradient
 
+  std::vector<SingleTableEntry> single_entries;  ///< instead of `entries`: use_single_precision()
+
   std::vector<double> point_values;  ///< φ_I(X_q) beside `entries`; empty in a value-based table
   ValueRows particle_values;         ///< φ_J(X_I); empty in a value-based table
   std::vector<double> mass_shares;   ///< of a value-based table, beside `entries`: I's share of the mass at q; Σ_I = 1. A body
@@ -67,12 +119,57 @@ struct PointTable {
 
   [[nodiscard]] std::size_t points() const { return volume.size(); }       ///< number of quadrature points
   /// Number of entries, padding included; of the whole body, where it is shared by several processes.
-  [[nodiscard]] std::size_t pairs() const { return entries.size() + pairs_elsewhere; }
+  [[nodiscard]] std::size_t pairs() const { return size() + pairs_elsewhere; }
+  /// Number of entries that are here, padding included.
+  [[nodiscard]] std::size_t size() const { return entries.size() + single_entries.size(); }
+  /// Entry e of the list, in double precision.
+  [[nodiscard]] TableEntry entry(std::size_t e) const { return single_entries.empty() ? entries[e] : TableEntry(single_entries[e]); }
   [[nodiscard]] bool value_based() const { return point_values.empty(); }  ///< unknowns are values at the particles
-  /// The entries of point q.
-  [[nodiscard]] std::span<const TableEntry> row(std::size_t q) const {
-    return {entries.data() + offsets[q], offsets[q + 1] - offsets[q]};
+  /// The entries of point q, in double precision.
+  [[nodiscard]] TableRow row(std::size_t q) const {
+    const bool single = !single_entries.empty();
+    return {single ? nullptr : entries.data() + offsets[q], single ? single_entries.data() + offsets[q] : nullptr, offsets[q + 1] - offsets[q]};
   }
+  /// The entries of point q as they are stored: Entry is TableEntry, or SingleTableEntry after use_single_precision().
+  template <class Entry>
+  [[nodiscard]] std::span<const Entry> stored_row(std::size_t q) const {
+    if constexpr (std::is_same_v<Entry, SingleTableEntry>) return {single_entries.data() + offsets[q], offsets[q + 1] - offsets[q]};
+    else return {entries.data() + offsets[q], offsets[q + 1] - offsets[q]};
+  }
+
+  /// Rounds the gradients to single precision and releases those in double precision. What each row loses in its sum is given to
+  /// the owner in a further entry, so that sums over a row (which keep momentum) hold to 1e-14, while single gradients, and
+  /// with them deformation gradients, are off by up to 6e-8 of their size. mass_shares must be released before.
+  void use_single_precision() {
+    std::vector<std::size_t> rows(1, 0);
+    rows.reserve(offsets.size());
+    std::vector<SingleTableEntry> rounded;
+    rounded.reserve(entries.size() + points());
+    std::vector<double> values;
+    const auto add = [&](const double (&gradient)[3], Index particle, double value) {
+      rounded.push_back({{float(gradient[0]), float(gradient[1]), float(gradient[2])}, particle});
+      if (!value_based()) values.push_back(value);
+      return TableEntry(rounded.back());
+    };
+    for (std::size_t q = 0; q < points(); ++q) {
+      double lost[3] = {};
+      for (std::size_t e = offsets[q]; e < offsets[q + 1]; ++e) {
+        const TableEntry& exact = entries[e];
+        if (e + 1 == offsets[q + 1] && exact.gradient[0] == 0.0 && exact.gradient[1] == 0.0 && exact.gradient[2] == 0.0) break;  // padding
+        const TableEntry stored = add(exact.gradient, exact.particle, value_based() ? 0.0 : point_values[e]);
+        for (int k = 0; k < 3; ++k) lost[k] += exact.gradient[k] - stored.gradient[k];
+      }
+      add(lost, owner[q], 0.0);
+      if (rounded.size() % 2 != 0) add({}, rounded[rows.back()].particle, 0.0);
+      rows.push_back(rounded.size());
+    }
+    offsets = std::move(rows);
+    single_entries = std::move(rounded);
+    single_entries.shrink_to_fit();
+    entries = std::vector<TableEntry>();
+    point_values = std::move(values);
+  }
+
   /// Weights of the stabilisation in row q: those of its first entries; the others have none.
   [[nodiscard]] std::span<const float> bonds(std::size_t q) const {
     if (bond_offsets.empty()) return {};
@@ -80,7 +177,7 @@ struct PointTable {
   }
   /// Bytes that the table holds.
   [[nodiscard]] std::size_t memory() const {
-    return entries.capacity() * sizeof(TableEntry) + (point_values.capacity() + mass_shares.capacity()) * sizeof(double) +
+    return entries.capacity() * sizeof(TableEntry) + single_entries.capacity() * sizeof(SingleTableEntry) + (point_values.capacity() + mass_shares.capacity()) * sizeof(double) +
            points() * (sizeof(Vector3) + 2 * sizeof(double) + 2 * sizeof(Index) + sizeof(std::size_t)) +
            bond_offsets.capacity() * sizeof(std::size_t) + bond_weights.capacity() * sizeof(float) +
            stabilization_scale.capacity() * sizeof(double) + particle_position.capacity() * sizeof(Vector4) + particle_values.values.capacity() * 12;

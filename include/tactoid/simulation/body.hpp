@@ -23,6 +23,7 @@
 #include <tactoid/kinematics/kinematics.hpp>
 #include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
+#include <tactoid/quadrature/stored.hpp>
 #include <tactoid/quadrature/particle_values.hpp>
 #include <tactoid/simulation/decomposition.hpp>
 #include <tactoid/simulation/earlier_configuration.hpp>
@@ -78,6 +79,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   static_assert(Quadrature<QuadratureType, KernelType>, "The fourth argument of a Body is a Quadrature for its kernel.");
   static constexpr int dimension = KernelType::dimension;                      ///< 1, 2 or 3, that of the kernel and the cloud
   static constexpr bool has_director = !std::is_same_v<Director, NoDirector>;  ///< a director field is carried along
+  /// What the table keeps of a pair: in single precision where the quadrature says so (stored_as).
+  using Entry = StoredEntry<QuadratureType>;
   static_assert(has_director || !(uses_director<LawOf<Ms>> || ...),
                 "A material of this body needs a director: give the Body a DirectorField and an initial director.");
 
@@ -423,6 +426,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     chunk_stretch_.assign(table_.chunks.size(), 0.0);
     chunk_failure_.assign(table_.chunks.size(), no_failure);
     point_scale_ = wave_numbers();
+    if constexpr (std::is_same_v<Entry, SingleTableEntry>) table_.use_single_precision();
     longest_row_ = 0;
     for (Index q = 0; q < table_.points(); ++q) longest_row_ = std::max(longest_row_, table_.row(q).size());
   }
@@ -572,14 +576,23 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// Gradients of the fields at the points of a block, which has as many as a law has lanes.
   template <int W>
   struct BlockGradients {
+    std::span<const TableEntry> row[W];  // in double precision
     rows::Gradient motion[W], rate[W], director[W];
   };
 
   template <bool Rate, int W>
   void gather_block(std::size_t begin, std::size_t end, BlockGradients<W>& g) const {
     for (std::size_t q = begin; q < end; ++q) {
-      const auto row = table_.row(q);
       const std::size_t l = q - begin;
+      const auto stored = table_.template stored_row<Entry>(q);
+      if constexpr (std::is_same_v<Entry, SingleTableEntry>) {
+        thread_local std::vector<TableEntry> unpacked;
+        unpacked.resize(std::max(unpacked.size(), W * longest_row_));
+        g.row[l] = rows::unpack(stored, unpacked.data() + l * longest_row_);
+      } else {
+        g.row[l] = stored;
+      }
+      const auto row = g.row[l];
       if constexpr (has_director) rows::gather(row, motion_.data(), director.data(), g.motion[l], g.rate[l], g.director[l]);
       else if constexpr (Rate) rows::gather(row, motion_.data(), g.motion[l], g.rate[l]);
       else rows::gather(row, motion<false>(), g.motion[l]);
@@ -665,8 +678,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         totals.dissipated_power += V * lane(response.dissipated_power, l);
         totals.active_power += V * lane(response.active_power, l);
         restrict_to_dimension(flux[l]);
-        const auto row = table_.row(q);
-        if (q + W < chunk.end) rows::prefetch(table_.row(q + W));
+        const auto row = gradients.row[l];
+        if (q + W < chunk.end) rows::prefetch(table_.template stored_row<Entry>(q + W));
         std::size_t bonds = 0;
         if (kappa > 0.0) {
           const rows::StabilizedPoint point{row, table_.bonds(q), table_.owner[q], kappa * table_.stabilization_scale[q], tau};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 #include <tactoid/core/lanes.hpp>
 #include <tactoid/core/quad.hpp>
@@ -69,10 +70,21 @@ inline void gather(std::span<const TableEntry> row, const Vector4* f, Gradient& 
   for (int K = 0; K < 3; ++K) df.column[K] = even.column[K] + odd.column[K];
 }
 
+/// A row of single precision in double, written to `to`. Once per step: gather, stabilise and scatter all read it from the cache.
+inline std::span<const TableEntry> unpack(std::span<const SingleTableEntry> row, TableEntry* to) {
+  for (std::size_t k = 0; k < row.size(); ++k) widen(&row[k], &to[k]);
+  return {to, row.size()};
+}
+
 /// ∂f/∂X of a field at a point of the table, the parts around an axis included; outside of the hot path.
 [[nodiscard]] inline Tensor3 gradient_at(const PointTable& table, std::size_t q, const Field& f) {
   Gradient df;
-  gather(table.row(q), f.data(), df);
+  if (table.single_entries.empty()) {
+    gather(table.stored_row<TableEntry>(q), f.data(), df);
+  } else {
+    std::vector<TableEntry> row(table.row(q).size());
+    gather(unpack(table.stored_row<SingleTableEntry>(q), row.data()), f.data(), df);
+  }
   if (table.axisymmetric) turn_around_axis(df);
   Tensor3 gradient;
   for (int K = 0; K < 3; ++K)
@@ -174,8 +186,9 @@ inline void scatter(std::span<const TableEntry> row, const Gradient& flux, std::
 }
 
 /// Asks for a row that will be needed soon, so that it comes from memory while other rows are computed.
-inline void prefetch(std::span<const TableEntry> row) {
-  for (std::size_t k = 0; k < row.size(); k += 2) __builtin_prefetch(row.data() + k);
+template <class Entry>
+void prefetch(std::span<const Entry> row) {
+  for (std::size_t k = 0; k < row.size(); k += 64 / sizeof(Entry)) __builtin_prefetch(row.data() + k);
 }
 
 /// Energy and dissipated power of the stabilisation of one point.

@@ -52,7 +52,7 @@ template <int D>
 
 /// The entries of a row, without the one that fills it up.
 [[nodiscard]] inline std::span<const TableEntry> pairs_of(const PointTable& table, std::size_t q) {
-  const auto row = table.row(q);
+  const auto row = table.stored_row<TableEntry>(q);
   return is_padding(table, q, table.offsets[q + 1] - 1) ? row.first(row.size() - 1) : row;
 }
 
@@ -91,7 +91,7 @@ template <class Law, class T>
 /// every component. (A template, so that programs that need no stiffness do not compile it.)
 template <class Matrix = Eigen::MatrixXd>
 [[nodiscard]] Matrix stabilization_stiffness(const PointTable& table, std::size_t q, std::size_t size, double kappa) {
-  const auto row = table.row(q).first(size);
+  const auto row = table.stored_row<TableEntry>(q).first(size);
   const auto n = static_cast<Eigen::Index>(size);
   const Index owner = table.owner[q];
   Matrix c(n, n);
@@ -144,6 +144,7 @@ struct StepTangent {
 /// implicit steps; the explicit steps need none.
 template <class Body>
 [[nodiscard]] StiffnessMatrix assemble_stiffness(const Body& body, const StepTangent& step = {}) {
+  static_assert(std::is_same_v<typename Body::Entry, TableEntry>, "Statics and implicit steps need a body whose gradients are stored as double.");
   constexpr int D = Body::dimension;
   const PointTable& table = body.table();
   const Field displacement = body.displacement_in_table();
