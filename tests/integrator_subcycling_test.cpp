@@ -86,6 +86,27 @@ SubcycledCentralDifference subcycled_steps(double safety, int max_ratio) {
   return {CentralDifference{.safety = safety}, max_ratio};
 }
 
+/// Notes when it is told of a breakdown.
+struct LastState {
+  bool& told;
+  double& at;
+  template <class S>
+  void begin(S&) {}
+  template <class S>
+  void after_step(S&) {}
+  template <class S>
+  void end(S&) {}
+  template <class S>
+  void last_good_state(S& simulation) {
+    told = true;
+    at = simulation.time();
+  }
+  template <class S>
+  double next_time(const S&) const {
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
 double difference(const Field& a, const Field& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
@@ -171,18 +192,23 @@ TEST_CASE("A soft and a stiff body in contact: momentum to round-off, energy as 
     r.soft = simulation.template body<0>().displacement;
     return r;
   };
-  const Result small = run(CentralDifference{.safety = 0.5}), own = run(subcycled_steps(0.5, 8));
-  for (const Result& r : {small, own})
+  // With bonds the soft body's stable step is five times that of the stiff one, and so its own is four times as long. Alone it would have the
+  // energy error of such steps, too: of second order.
+  const Result small = run(CentralDifference{.safety = 0.5}), own = run(subcycled_steps(0.5, 8)), finer = run(subcycled_steps(0.25, 8));
+  for (const Result& r : {small, own, finer})
     MESSAGE(r.steps, " steps, laws asked ", r.calls[0], " and ", r.calls[1], " times; momentum ", r.momentum / r.exchanged, " of what was exchanged; energy error ",
             r.energy, ", drift ", r.drift);
-  MESSAGE("displacements differ by ", difference(small.soft, own.soft) / size(small.soft));
+  MESSAGE("displacements differ by ", difference(small.soft, own.soft) / size(small.soft), " and ", difference(small.soft, finer.soft) / size(small.soft));
   CHECK(small.exchanged > 1e-10 * um);
-  CHECK(own.momentum <= 1e-12 * own.exchanged);
-  CHECK(own.energy < 2e-2);
-  CHECK(own.drift < 3.0 * small.drift + 1e-3);
-  CHECK(own.calls[0] * 7 < small.calls[0]);
-  CHECK(own.calls[1] < 1.1 * static_cast<double>(small.calls[1]));
-  CHECK(difference(small.soft, own.soft) < 1e-2 * size(small.soft));
+  for (const Result& r : {own, finer}) CHECK(r.momentum <= 1e-12 * r.exchanged);
+  CHECK(small.energy < 2e-3);
+  CHECK(own.energy < 4e-2);
+  CHECK(finer.energy < own.energy / 3.5);
+  CHECK(own.drift < 3e-3);
+  CHECK(finer.drift < own.drift / 3.5);
+  CHECK(static_cast<double>(own.calls[0]) < 0.26 * static_cast<double>(small.calls[0]));
+  CHECK(static_cast<double>(own.calls[1]) < 1.02 * static_cast<double>(small.calls[1]));
+  CHECK(difference(small.soft, finer.soft) < 1e-2 * size(small.soft));
 }
 
 TEST_CASE("Steps of the bodies' own are of second order") {
@@ -193,20 +219,21 @@ TEST_CASE("Steps of the bodies' own are of second order") {
     for (std::size_t i = 0; i < stiff.size(); ++i) stiff.velocity[i][1] = 0.1 * std::cos(0.8e6 * stiff.reference()[i][0]);
     Simulation simulation{Bodies{std::move(soft), std::move(stiff)}, Contacts{between<0, 1>(LigandReceptor{})}, Boundaries{}, integrator};
     simulation.run(1.6e-6);
-    Field all = simulation.template body<0>().displacement;
-    const Field& more = simulation.template body<1>().displacement;
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+    return std::array<Field, 2>{simulation.template body<0>().displacement, simulation.template body<1>().displacement};
   };
-  const double longest = 1.6e-6 / 256.0;
-  const Field exact = end_state(CentralDifference{.time_step = longest / 16.0});
-  std::array<double, 3> error{};
-  for (std::size_t k = 0; k < 3; ++k)
-    error[k] = difference(end_state(SubcycledCentralDifference{CentralDifference{.time_step = longest / std::pow(2.0, double(k))}, 8}), exact) / size(exact);
-  MESSAGE("errors ", error[0], ", ", error[1], ", ", error[2]);
-  CHECK(error[0] < 2e-2);
-  CHECK(error[0] / error[1] > 3.3);
-  CHECK(error[1] / error[2] > 3.3);
+  const double longest = 1.6e-6 / 128.0;
+  const auto exact = end_state(CentralDifference{.time_step = longest / 32.0});
+  std::array<std::array<double, 2>, 3> error{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto state = end_state(SubcycledCentralDifference{CentralDifference{.time_step = longest / std::pow(2.0, double(k))}, 4});
+    for (std::size_t b = 0; b < 2; ++b) error[k][b] = difference(state[b], exact[b]) / size(exact[b]);
+    MESSAGE("errors of the soft body ", error[k][0], ", of the stiff one ", error[k][1]);
+  }
+  for (std::size_t b = 0; b < 2; ++b) {
+    CHECK(error[0][b] < 2e-2);
+    CHECK(error[0][b] / error[1][b] > 3.3);
+    CHECK(error[1][b] / error[2][b] > 3.3);
+  }
 }
 
 TEST_CASE("A gel with a director in steps of its own: the state, what it dissipates, and the balance are those of small steps") {
@@ -236,18 +263,21 @@ TEST_CASE("A viscous body in steps of its own creeps and dissipates as in small 
     Body soft = block("soft", YangVisco<>{.elastic = ModifiedMooneyRivlin{.c1 = 500.0, .c2 = 50.0, .lambda = 5e3}, .a1 = 3e3, .a2 = 8e2, .a3 = 5e-6}, 0.1 * um, 0.0, 1e-7);
     Body stiff = block("stiff", NeoHookean::from_young(2e5, 0.3), -2.0 * um, 0.0);
     for (std::size_t i = 0; i < soft.size(); ++i) soft.velocity[i][0] = 0.4 * std::sin(1.5e6 * soft.reference()[i][1]);
-    Simulation simulation{Bodies{std::move(soft), std::move(stiff)}, Contacts{between<0, 1>(LigandReceptor{})}, Boundaries{on<0>(BodyForce<>{[](const Vector3&, double) { return Vector3(0.0, -2e4, 0.0); }})}, integrator};
+    Simulation simulation{Bodies{std::move(soft), std::move(stiff)}, Contacts{between<0, 1>(LigandReceptor{})}, Boundaries{on<0>(BodyForce<>{Vector3(0.0, -2e4, 0.0)})}, integrator};
     simulation.run(6e-6);
     return std::pair{simulation.ledger(), Field(simulation.template body<0>().displacement)};
   };
-  const auto [a, u] = run(CentralDifference{.safety = 0.4});
-  const auto [b, w] = run(subcycled_steps(0.4, 8));
-  MESSAGE("dissipated ", a.dissipated, " and ", b.dissipated, " of ", a.largest_work, ", external work ", a.external_work, " and ", b.external_work, "; error ", a.error(), " and ", b.error(),
+  // What central differences book of viscosity is of first order in the step that the velocity is behind: here the body's own.
+  const auto [a, u] = run(CentralDifference{.safety = 0.1});
+  const auto [b, w] = run(subcycled_steps(0.1, 8));
+  const auto [c, x] = run(subcycled_steps(0.05, 8));
+  MESSAGE("dissipated ", a.dissipated, ", ", b.dissipated, " and ", c.dissipated, " of ", a.largest_work, "; error ", a.error(), ", ", b.error(), " and ", c.error(),
           "; displacements differ by ", difference(u, w) / size(u));
-  CHECK(a.dissipated > 0.2 * a.largest_work);
-  CHECK(b.dissipated == test::relative(a.dissipated).epsilon(0.03));
-  CHECK(b.error() < 0.03);
-  CHECK(difference(u, w) < 0.02 * size(u));
+  CHECK(a.dissipated > 0.1 * a.largest_work);
+  CHECK(b.dissipated == test::relative(a.dissipated).epsilon(0.05));
+  CHECK(b.error() < 0.015);
+  CHECK(c.error() < 0.6 * b.error());
+  CHECK(difference(u, w) < 2e-4 * size(u));
 }
 
 TEST_CASE("A clamped body in steps of its own: reactions do not jump, and what is held stands still") {
@@ -255,12 +285,12 @@ TEST_CASE("A clamped body in steps of its own: reactions do not jump, and what i
     Body soft = block("soft", NeoHookean::from_young(1.5e3, 0.3), 0.1 * um, 0.0), stiff = block("stiff", NeoHookean::from_young(2e5, 0.3), -2.0 * um, 0.0);
     const auto top = select(soft.cloud(), [](const Point<2>& X) { return X[1] > 2.09 * um; });
     Simulation simulation{Bodies{std::move(soft), std::move(stiff)}, Contacts{between<0, 1>(LigandReceptor{})},
-                          Boundaries{on<0>(PrescribedMotion{top, [](const Vector3&, double t) { return Vector3(0.0, 1e10 * t * t, 0.0); }, {true, true, true}})}, integrator};
+                          Boundaries{on<0>(PrescribedMotion{top, [](const Vector3&, double t) { return Vector3(0.0, 1e4 * t * t, 0.0); }, {true, true, true}})}, integrator};
     std::vector<double> forces;
     simulation.run(6e-6, every(0.3e-6, [&](auto& s) { forces.push_back(reactions<0>(s).total[1]); }));
     double slip = 0.0;
     const Field v = simulation.template velocity<0>();
-    for (const Index i : top) slip = std::max(slip, std::abs(v[i][1] - 2e10 * simulation.time()));
+    for (const Index i : top) slip = std::max(slip, std::abs(v[i][1] - 2e4 * simulation.time()));
     return std::tuple{forces, slip, simulation.ledger()};
   };
   const auto [a, slip_a, small] = run(CentralDifference{.safety = 0.4});
@@ -270,10 +300,10 @@ TEST_CASE("A clamped body in steps of its own: reactions do not jump, and what i
   for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k])), difference = std::max(difference, std::abs(a[k] - b[k]));
   MESSAGE("reactions up to ", largest, ", differ by ", difference / largest, "; the held ones slip by ", slip_a, " and ", slip_b, " m/s; work ", small.external_work,
           " and ", own.external_work, ", error ", small.error(), " and ", own.error());
-  CHECK(difference < 0.05 * largest);
-  CHECK(slip_b < 0.02 * 2e10 * 6e-6);
+  CHECK(difference < 0.02 * largest);
+  CHECK(slip_b < 1e-3 * 2e4 * 6e-6);
   CHECK(own.external_work == test::relative(small.external_work).epsilon(0.02));
-  CHECK(own.error() < 0.02);
+  CHECK(own.error() < 1e-2);
 }
 
 TEST_CASE("A run that is continued from a checkpoint, on other threads, has the same bits") {
@@ -305,20 +335,13 @@ TEST_CASE("A step that breaks down within a cycle leaves the last small step") {
                         subcycled_steps(0.5, 8)};
   bool told = false;
   double told_at = 0.0;
-  struct Last {
-    bool& told;
-    double& at;
-    void begin(auto&) {}
-    void after_step(auto&) {}
-    void end(auto&) {}
-    void last_good_state(auto& s) { told = true, at = s.time(); }
-    double next_time(const auto&) const { return std::numeric_limits<double>::infinity(); }
-  };
-  CHECK_THROWS_WITH_AS(simulation.run(1e-6, Last{told, told_at}), doctest::Contains("Body \"stiff\", particle"), ComputationError);
+  CHECK_THROWS_WITH_AS(simulation.run(1e-6, LastState{told, told_at}), doctest::Contains("Body \"stiff\", particle"), ComputationError);
   CHECK(told);
   CHECK(told_at < moment);
   CHECK(told_at > moment - simulation.last_time_step() * 1.01);
   CHECK(size(simulation.body<1>().displacement) < 1e-12 * um);
+  CHECK(simulation.integrator().report.steps % 8 != 0);
+  CHECK(std::all_of(simulation.body<0>().displacement.begin(), simulation.body<0>().displacement.end(), [](const Vector4& u) { return u.allFinite(); }));
   MESSAGE("broke down ", (moment - told_at) / simulation.last_time_step(), " small steps after ", told_at, " s, after ", simulation.steps(), " cycles, ",
           simulation.integrator().report.steps, " steps");
 }
@@ -348,7 +371,7 @@ TEST_CASE("Fixed steps, events and updates of the reference go together with ste
           ", energy error ", simulation.ledger().error());
   CHECK(simulation.integrator().reference.updates > 0);
   CHECK(simulation.ledger().error() < 0.05);
-  for (std::size_t k = 0; k + 1 < called.size(); ++k) CHECK(called[k] == test::relative(1.7e-6 * static_cast<double>(k)).epsilon(1e-12));
+  for (std::size_t k = 1; k + 1 < called.size(); ++k) CHECK(called[k] == test::relative(1.7e-6 * static_cast<double>(k)).epsilon(1e-12));
   const double fixed_step = 0.4 * simulation.largest_stable_time_step();
   auto fixed_steps = collision(SubcycledCentralDifference{CentralDifference{.time_step = fixed_step}, 8});
   fixed_steps.run(21.5 * fixed_step);

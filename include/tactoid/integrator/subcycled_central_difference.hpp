@@ -35,8 +35,8 @@ struct SubcycleReport {
 /// while the steps stay the same, and conserves linear momentum to round-off. Histories, directors and what the laws dissipate advance with the body's own steps.
 ///
 /// `step` takes one cycle, at whose end the steps of all bodies end. So observers and checkpoints see all of them at one instant; `Simulation::steps` counts
-/// cycles. The ratios are chosen anew in each, as the largest powers of two for which a body's own step is `safety` times its stable one, contacts and terms
-/// included: modes of a contact are then slower than the impulses, which else might drive them. The cycles up to an event are made
+/// cycles. The ratios are chosen anew in each: the largest powers of two that are not above those of the bodies' stable steps, contacts and terms
+/// included, so that the impulses are faster than the modes of a contact, which they might drive else. The cycles up to an event are made
 /// equal. Where a contact becomes stiffer within a cycle, its small steps are divided.
 struct SubcycledCentralDifference : CentralDifference {
   static constexpr bool subcycled = true;  ///< see tactoid::subcycled
@@ -66,7 +66,8 @@ struct SubcycledCentralDifference : CentralDifference {
     if (remaining <= 0.0) return;
     std::array<int, System::body_count> ratios;
     const auto stable = system.stable_time_steps();
-    for (std::size_t b = 0; b < ratios.size(); ++b) ratios[b] = power_of_two(std::min(safety * stable[b] / longest, double(max_ratio)));
+    const double least = *std::min_element(stable.begin(), stable.end());
+    for (std::size_t b = 0; b < ratios.size(); ++b) ratios[b] = power_of_two(std::min(stable[b] / least, double(max_ratio)));
     int cycle = *std::max_element(ratios.begin(), ratios.end());
     double dt = longest;
     if (time_step > 0.0) {
