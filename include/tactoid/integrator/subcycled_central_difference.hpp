@@ -41,7 +41,7 @@ struct SubcycleReport {
 struct SubcycledCentralDifference : CentralDifference {
   static constexpr bool subcycled = true;  ///< see tactoid::subcycled
   int max_ratio = 8;                       ///< of the longest step of a body over the smallest, a power of two; 1: the steps of CentralDifference
-  SubcycleReport report{};                 ///< set by the steps
+  SubcycleReport report{};                 ///< set by the steps, where max_ratio is above 1
 
   /// Throws ParameterError as CentralDifference does, and unless max_ratio is a power of two.
   void validate() const {
@@ -61,6 +61,7 @@ struct SubcycledCentralDifference : CentralDifference {
   /// One cycle, not beyond `until` (s). Throws as CentralDifference::step; what breaks down within a cycle leaves the last small step before.
   template <class System>
   void step(System& system, double until) {
+    if (max_ratio == 1) return CentralDifference::step(system, until);
     const double longest = longest_step(system);
     const double remaining = until - system.time();
     if (remaining <= 0.0) return;
@@ -82,7 +83,7 @@ struct SubcycledCentralDifference : CentralDifference {
       ratios[b] = std::min(ratios[b], cycle);
       if (ratios[b] > 1) steps[b] = ratios[b] * dt;
     }
-    if (max_ratio > 1) system.set_body_steps(steps);
+    system.set_body_steps(steps);
     for (int k = 0; k < cycle; ++k) {
       const int parts = k == 0 ? 1 : division(system, dt);
       for (int part = 0; part < parts; ++part) advance(system, dt / parts);
