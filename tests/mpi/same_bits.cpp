@@ -20,6 +20,7 @@
 #include <tactoid/director/all.hpp>
 #include <tactoid/geometry/all.hpp>
 #include <tactoid/integrator/central_difference.hpp>
+#include <tactoid/integrator/subcycled_central_difference.hpp>
 #include <tactoid/kernel/all.hpp>
 #include <tactoid/material/all.hpp>
 #include <tactoid/mpi.hpp>
@@ -191,6 +192,18 @@ TEST_CASE("A cell on a substrate") {
     take(simulation, 80);
     const auto gaps = simulation.template contact<1>().gaps();
     CHECK(*std::min_element(gaps.begin(), gaps.end()) < 0.1 * um);  // they touch
+    return whole(simulation);
+  };
+  compare(compose, compute);
+  compare(compose, compute, scattered);
+}
+
+TEST_CASE("A cell and a substrate in steps of their own") {
+  const auto compose = [] { return cell(SubcycledCentralDifference{CentralDifference{}, 8}); };
+  const auto compute = [](auto& simulation) {
+    simulation.run(60.0 * simulation.largest_stable_time_step());
+    const auto& report = simulation.integrator().report;
+    CHECK(2 * *std::min_element(report.body_steps.begin(), report.body_steps.end()) <= report.steps);
     return whole(simulation);
   };
   compare(compose, compute);
