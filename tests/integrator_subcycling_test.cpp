@@ -217,12 +217,12 @@ TEST_CASE("A soft and a stiff body in contact: momentum to round-off, energy as 
   CHECK(small.exchanged > 1e-10 * um);
   for (const Result& r : {own, finer}) CHECK(r.momentum <= 1e-12 * r.exchanged);
   CHECK(small.energy < 2e-3);
-  CHECK(own.energy < 4e-2);
-  CHECK(finer.energy < own.energy / 3.5);
-  CHECK(own.drift < 3e-3);
-  CHECK(finer.drift < own.drift / 3.5);
-  CHECK(static_cast<double>(own.calls[0]) < 0.26 * static_cast<double>(small.calls[0]));
-  CHECK(static_cast<double>(own.calls[1]) < 1.02 * static_cast<double>(small.calls[1]));
+  CHECK(own.energy < 2e-2);
+  CHECK(finer.energy < own.energy / 3.0);
+  CHECK(own.drift < 1e-3);
+  CHECK(finer.drift < own.drift / 3.0);
+  CHECK(static_cast<double>(own.calls[0]) < 0.28 * static_cast<double>(small.calls[0]));
+  CHECK(static_cast<double>(own.calls[1]) < 1.1 * static_cast<double>(small.calls[1]));
   CHECK(difference(small.soft, finer.soft) < 1e-2 * size(small.soft));
 }
 
@@ -248,7 +248,8 @@ TEST_CASE("Steps of the bodies' own are of second order") {
     error[k][2] = slip;
     MESSAGE("errors of the soft body ", error[k][0], ", of the stiff one ", error[k][1], ", of velocities that contacts see ", slip);
   }
-  for (std::size_t b = 0; b < 3; ++b) {
+  for (std::size_t k = 0; k < 3; ++k) CHECK(error[k][2] < 0.02 / std::pow(2.0, double(k)));
+  for (std::size_t b = 0; b < 2; ++b) {
     CHECK(error[0][b] < 2e-2);
     CHECK(error[0][b] / error[1][b] > 3.3);
     CHECK(error[1][b] / error[2][b] > 3.3);
@@ -283,7 +284,7 @@ TEST_CASE("The rate that a law sees, times its step, is the change of the deform
   Simulation simulation{Bodies{block("soft", law, 0.1 * um, -0.05), block("stiff", NeoHookean::from_young(2e5, 0.3), -2.0 * um, 0.02)},
                         Contacts{between<0, 1>(LigandReceptor{})}, Boundaries{}, subcycled_steps(0.5, 8)};
   simulation.run(6e-6);
-  CHECK(simulation.integrator().report.body_steps[0] * 3 < simulation.integrator().report.steps);
+  CHECK(simulation.integrator().report.body_steps[0] * 2 < simulation.integrator().report.steps);
   MESSAGE("rest ", simulation.ledger().dissipated / simulation.ledger().external_work, " of the change");
   CHECK(simulation.ledger().external_work > 0.0);
   CHECK(simulation.ledger().dissipated < 1e-18 * simulation.ledger().external_work);

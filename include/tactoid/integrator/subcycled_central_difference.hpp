@@ -35,13 +35,15 @@ struct SubcycleReport {
 /// while the steps stay the same, and conserves linear momentum to round-off. Histories, directors and what the laws dissipate advance with the body's own steps.
 ///
 /// `step` takes one cycle, at whose end the steps of all bodies end. So observers and checkpoints see all of them at one instant; `Simulation::steps` counts
-/// cycles. The ratios are chosen anew in each: the largest powers of two that are not above those of the bodies' stable steps, contacts and terms
-/// included, so that the impulses are faster than the modes of a contact, which they might drive else. The cycles up to an event are made
-/// equal. Where a contact becomes stiffer within a cycle, its small steps are divided.
+/// cycles. The ratios are powers of two that are not above those of the bodies' stable steps, contacts and terms included, so that the impulses are
+/// faster than the modes of a contact, which they might drive else. They are looked at in each cycle, and fall at once but grow late; so does the small step, unless
+/// all ratios are 1. The cycles up to an event are made equal. Where a contact becomes stiffer within a cycle, its small steps are divided.
 struct SubcycledCentralDifference : CentralDifference {
   static constexpr bool subcycled = true;  ///< see tactoid::subcycled
   int max_ratio = 8;                       ///< of the longest step of a body over the smallest, a power of two; 1: the steps of CentralDifference
   SubcycleReport report{};                 ///< set by the steps, where max_ratio is above 1
+  std::vector<int> wanted{};               ///< set by the steps: the ratio of each body where no event cuts the cycle
+  double held_step = 0.0;                  ///< set by the steps: the smallest step where no event cuts it, s
 
   /// Throws ParameterError as CentralDifference does, and unless max_ratio is a power of two.
   void validate() const {
@@ -56,20 +58,23 @@ struct SubcycledCentralDifference : CentralDifference {
     validate();
     CentralDifference::initialize(system);
     report = {.body_steps = std::vector<std::size_t>(System::body_count, 0)};
+    wanted.clear();
+    held_step = 0.0;
   }
 
   /// One cycle, not beyond `until` (s). Throws as CentralDifference::step; what breaks down within a cycle leaves the last small step before.
   template <class System>
   void step(System& system, double until) {
     if (max_ratio == 1) return CentralDifference::step(system, until);
-    const double longest = longest_step(system);
+    double longest = longest_step(system);
     const double remaining = until - system.time();
     if (remaining <= 0.0) return;
-    std::array<int, System::body_count> ratios;
-    const auto stable = system.stable_time_steps();
-    const double least = *std::min_element(stable.begin(), stable.end());
-    for (std::size_t b = 0; b < ratios.size(); ++b) ratios[b] = power_of_two(std::min(stable[b] / least, double(max_ratio)));
+    choose_ratios(system);
+    std::vector<int> ratios = wanted;
     int cycle = *std::max_element(ratios.begin(), ratios.end());
+    // Steps that follow every change of the stable one take in or give off energy.
+    if (time_step == 0.0 && cycle > 1 && held_step <= longest && held_step >= (1.0 - reluctance) * longest) longest = held_step;
+    held_step = longest;
     double dt = longest;
     if (time_step > 0.0) {
       cycle = std::min(cycle, power_of_two(remaining / longest * (1.0 + 1e-12)));
@@ -94,13 +99,31 @@ struct SubcycledCentralDifference : CentralDifference {
     }
   }
 
-  /// For checkpoints: what was counted.
+  /// For checkpoints: what was counted, and what the next cycle begins with.
   template <class Archive>
   void state(Archive& archive) {
-    if (max_ratio > 1) archive.part("subcycles", report);
+    if (max_ratio == 1) return;
+    archive.part("subcycles", report);
+    archive("ratios", wanted);
+    archive("held_step", held_step);
   }
 
  private:
+  static constexpr double reluctance = 0.25;  // share by which the stable steps change before the own ones grow
+
+  /// A ratio falls at once where it must, but grows only when there is more than enough room: each change takes in or gives off energy.
+  template <class System>
+  void choose_ratios(System& system) {
+    const auto stable = system.stable_time_steps();
+    const double least = *std::min_element(stable.begin(), stable.end());
+    const bool first = wanted.empty();
+    wanted.resize(stable.size(), 1);
+    for (std::size_t b = 0; b < stable.size(); ++b) {
+      const auto allowed = [&](double room) { return power_of_two(std::min(stable[b] / least / room, double(max_ratio))); };
+      wanted[b] = first ? allowed(1.0) : std::min(allowed(1.0), std::max(wanted[b], allowed(1.0 + reluctance)));
+    }
+  }
+
   /// The largest one up to x, at least 1.
   [[nodiscard]] static int power_of_two(double x) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(x, 1.0, double(1 << 30))))); }
 
