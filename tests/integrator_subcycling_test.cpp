@@ -357,6 +357,9 @@ TEST_CASE("A run that is continued from a checkpoint, on other threads, has the 
   check_same(save_state(whole), save_state(resumed));
   check_same(save_state(whole), save_state(again));
 
+  auto without = cell_on_substrate(subcycled_steps(0.8, 1));
+  CHECK_THROWS_WITH_AS(restore_state(without, saved), "SubcycledCentralDifference.max_ratio = 1 is not allowed: the saved state has steps of the bodies' own.", ParameterError);
+
   // The next cycle is shorter, and so are the steps of the soft body.
   const auto blocks = [] { return collision(SubcycledCentralDifference{CentralDifference{.time_step = 5e-9}, 8}); };
   auto first = blocks(), second = blocks();

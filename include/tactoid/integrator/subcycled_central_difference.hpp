@@ -99,9 +99,12 @@ struct SubcycledCentralDifference : CentralDifference {
     }
   }
 
-  /// For checkpoints: what was counted, and what the next cycle begins with.
+  /// For checkpoints: what was counted, and what the next cycle begins with. Throws ParameterError where bodies had steps of their own and now may not.
   template <class Archive>
   void state(Archive& archive) {
+    if constexpr (Archive::restoring)
+      if (max_ratio == 1 && archive.has("held_step"))
+        throw ParameterError("SubcycledCentralDifference.max_ratio = 1 is not allowed: the saved state has steps of the bodies' own.");
     if (max_ratio == 1) return;
     archive.part("subcycles", report);
     archive("ratios", wanted);
