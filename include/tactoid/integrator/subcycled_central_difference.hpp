@@ -122,7 +122,8 @@ struct SubcycledCentralDifference : CentralDifference {
     const bool first = wanted.empty();
     wanted.resize(stable.size(), 1);
     for (std::size_t b = 0; b < stable.size(); ++b) {
-      const auto allowed = [&](double room) { return power_of_two(std::min(stable[b] / least / room, double(max_ratio))); };
+      const double ratio = stable[b] > least ? stable[b] / least : 1.0;  // also where nothing limits any of them
+      const auto allowed = [&](double room) { return power_of_two(std::min(ratio / room, double(max_ratio))); };
       wanted[b] = first ? allowed(1.0) : std::min(allowed(1.0), std::max(wanted[b], allowed(1.0 + reluctance)));
     }
   }
