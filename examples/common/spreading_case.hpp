@@ -57,7 +57,9 @@ struct SpreadingCase {
   }
   /// Everything on: both contacts, anchoring, what is added, surface tension, the fixed bottom.
   [[nodiscard]] auto simulation() const {
-    return simulation(CentralDifference{.safety = p.safety, .time_step = p.time_step, .min_time_step = p.min_time_step});
+    const SubcycledCentralDifference integrator{{.safety = p.safety, .time_step = p.time_step, .min_time_step = p.min_time_step}, p.subcycling};
+    integrator.validate();  // before bodies are built
+    return simulation(integrator);
   }
   /// The same under another integrator.
   template <class Integrator>

@@ -78,6 +78,7 @@ struct SpreadingParameters {
   double safety = 0.8;             ///< of the stable time step
   double time_step = 0.0;          ///< s; 0: chosen by the library
   double min_time_step = 1e-15;    ///< s; a run whose stable step is shorter stops
+  int subcycling = 1;              ///< largest ratio of the steps of the two bodies, a power of two; 1: they are the same
   double end_time = 5e-6;          ///< s
 
   void add_to(Options& options) {
@@ -152,6 +153,8 @@ struct SpreadingParameters {
                          "Fixed time step; 0: chosen by the program");
     options.add_quantity("min-time-step", &min_time_step, Quantity::time, Range::non_negative(),
                          "A run whose stable time step is shorter stops");
+    options.add("subcycling", &subcycling, Range::between(1, 64),
+                "Explicit steps of the softer body may be so many of the stiffer one's, a power of two; 1: both take the same");
   }
 
   [[nodiscard]] int count(int at_one, int least) const {

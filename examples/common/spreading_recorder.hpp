@@ -152,7 +152,18 @@ class SpreadingRecorder {
     summary.set("particles_cell", simulation.template body<0>().size());
     summary.set("particles_substrate", simulation.template body<1>().size());
     summary.set("pairs", simulation.pairs());
-    const double visits = static_cast<double>(steps_taken) * static_cast<double>(simulation.pairs());
+    double visits = static_cast<double>(steps_taken) * static_cast<double>(simulation.pairs());
+    if constexpr (requires { simulation.integrator().report.body_steps; })
+      if (simulation.integrator().max_ratio > 1 && simulation.steps() > 0) {
+        // Steps above are cycles; of a run that was continued, its share of all visits.
+        const auto& report = simulation.integrator().report;
+        summary.set("small_steps", report.steps);
+        summary.set("steps_cell", report.body_steps[0]);
+        summary.set("steps_substrate", report.body_steps[1]);
+        visits = static_cast<double>(report.body_steps[0]) * static_cast<double>(simulation.template body<0>().table().pairs()) +
+                 static_cast<double>(report.body_steps[1]) * static_cast<double>(simulation.template body<1>().table().pairs());
+        visits *= static_cast<double>(steps_taken) / static_cast<double>(simulation.steps());
+      }
     summary.set("ns_per_pair", visits > 0.0 ? 1e9 * (wall_seconds - seconds_) / visits : 0.0);
     if constexpr (requires { simulation.integrator().report(); }) {
       const auto& report = simulation.integrator().report();

@@ -20,6 +20,7 @@
 #include <tactoid/director/all.hpp>
 #include <tactoid/geometry/all.hpp>
 #include <tactoid/integrator/central_difference.hpp>
+#include <tactoid/integrator/subcycled_central_difference.hpp>
 #include <tactoid/kernel/all.hpp>
 #include <tactoid/material/all.hpp>
 #include <tactoid/mpi.hpp>
@@ -102,8 +103,10 @@ void shake(Body& body, double speed) {
     for (int k = 0; k < Body::dimension; ++k) body.velocity[i][k] = speed * detail::hashed_uniform(7, 3 * i + static_cast<std::size_t>(k));
 }
 
-auto slab(PointCloud<3> cloud, std::size_t points_per_chunk) {
-  return Body{"slab", std::move(cloud), Rkpm<3>{}, NodalCentroids{.points_per_chunk = points_per_chunk}, Materials{Region{"body", YangVisco<>{}}}};
+auto slab(PointCloud<3> cloud, std::size_t points_per_chunk, double stiffness = 1.0) {
+  YangVisco<> law;
+  law.elastic = law.elastic.scaled(stiffness);
+  return Body{"slab", std::move(cloud), Rkpm<3>{}, NodalCentroids{.points_per_chunk = points_per_chunk}, Materials{Region{"body", law}}};
 }
 
 /// A free body under surface tension.
@@ -119,7 +122,7 @@ auto block() {
 
 /// A cell with everything on, near enough to its substrate to stick to it; so large that METIS cuts it, and no rank needs all of it.
 template <class Integrator>
-auto cell(const Integrator& integrator) {
+auto cell(const Integrator& integrator, double stiffness = 1.0) {
   Body body{"cell",
             ball({.radius = 5.0 * um, .core_radius = 2.0 * um, .core_cells = 4, .shells = 4, .center = {0.0, 0.0, 5.15 * um}}),
             Rkpm<3>{},
@@ -127,7 +130,7 @@ auto cell(const Integrator& integrator) {
             Materials{Region{"nucleus", ModifiedMooneyRivlin{}}, Region{"cytoplasm", NematicGel<>{}}},
             DirectorField<>{},
             RandomDirector{{.correlation_length = 2.0 * um, .seed = 2}}};
-  Body ground = slab(disc({.radius = 8.0 * um, .height = 3.0 * um, .core_cells = 4, .rings = 2, .layers = 4}), 16);
+  Body ground = slab(disc({.radius = 8.0 * um, .height = 3.0 * um, .core_cells = 4, .rings = 2, .layers = 4}), 16, stiffness);
   const auto bottom = select(ground.cloud(), [](const Point<3>& X) { return X[2] < -2.99 * um; });
   return Simulation{Bodies{std::move(body), std::move(ground)},
                     Contacts{between<0, 1>(LigandReceptor{}), between<0, 1>(VanDerWaals{}), between<0, 1>(ContactAnchoring{})},
@@ -191,6 +194,18 @@ TEST_CASE("A cell on a substrate") {
     take(simulation, 80);
     const auto gaps = simulation.template contact<1>().gaps();
     CHECK(*std::min_element(gaps.begin(), gaps.end()) < 0.1 * um);  // they touch
+    return whole(simulation);
+  };
+  compare(compose, compute);
+  compare(compose, compute, scattered);
+}
+
+TEST_CASE("A cell and a substrate in steps of their own") {
+  const auto compose = [] { return cell(SubcycledCentralDifference{CentralDifference{}, 8}, 1000.0); };
+  const auto compute = [](auto& simulation) {
+    simulation.run(60.0 * simulation.largest_stable_time_step());
+    const auto& report = simulation.integrator().report;
+    CHECK(2 * *std::min_element(report.body_steps.begin(), report.body_steps.end()) <= report.steps);
     return whole(simulation);
   };
   compare(compose, compute);

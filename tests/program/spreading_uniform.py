@@ -147,6 +147,23 @@ class Results(Case):
         for name in os.listdir(one / "fields"):
             self.assertEqual((one / "fields" / name).read_bytes(), (two / "fields" / name).read_bytes())
 
+    def test_bodies_take_steps_of_their_own(self):
+        near = ["--gap", "1nm", "--resolution", "0.4", "--end-time", "0.2us", "--frames", "1", "--samples", "5", "--threads", "1"]
+        self.succeed(*near, "--out", "plain")
+        self.succeed(*near, "--subcycling", "4", "--out", "own")
+        self.succeed("--config", "own/parameters.toml", "--threads", "2", "--out", "again")
+        self.assertIn("subcycling = 4\n", (self.folder / "again/parameters.toml").read_text())
+        for name in ("history.csv", "front.csv"):
+            self.assertEqual((self.folder / "own" / name).read_bytes(), (self.folder / "again" / name).read_bytes())
+        plain, own = (json.loads((self.folder / name / "summary.json").read_text()) for name in ("plain", "own"))
+        self.assertNotIn("small_steps", plain)
+        self.assertEqual(own["steps_substrate"], own["small_steps"])
+        self.assertGreaterEqual(own["small_steps"], 2 * own["steps_cell"])
+        self.assertLess(own["steps"], own["small_steps"])
+        self.assertLess(own["energy_error"], 2.0 * plain["energy_error"] + 1e-3)
+        for name in ("spread_area", "nucleus_effective_stress_mean", "dissipated_energy", "momentum_z"):
+            self.assertLess(abs(own[name] / plain[name] - 1.0), 0.03, name)
+
     def test_a_second_run_replaces_the_first(self):
         self.succeed(*SMALL, "--out", "a")
         before = (self.folder / "a/history.csv").read_bytes()
@@ -200,6 +217,7 @@ class BadInput(Case):
             ("end-time", "-5us", "-5 us", "positive"),
             ("viscosity", "-1", "-1 Pa.s", "zero or positive"),
             ("safety", "1.5", "1.5", "between 0.01 and 1"),
+            ("subcycling", "0", "0", "between 1 and 64"),
             ("threads", "0", "0", "between 1 and 1024"),
             ("frames", "-1", "-1", "between 1 and"),
         ):
@@ -210,6 +228,9 @@ class BadInput(Case):
     def test_time_step_above_the_stable_one(self):
         self.refuse("--resolution", "0.3", "--time-step", "1us", says=["time_step = 1e-06 s", "stable step"])
         self.refuse("--resolution", "0.3", "--time-step", "1s", says=["time_step = 1 s", "stable step"])
+
+    def test_ratio_of_steps(self):
+        self.refuse("--subcycling", "3", says=["max_ratio = 3", "1, 2, 4, 8 or another power of two"])
 
     def test_no_numbers(self):
         self.refuse("--end-time", "5 parsecs", says=["--end-time", '"5 parsecs"', "parsecs", "ms, us, ns"])

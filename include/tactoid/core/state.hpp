@@ -152,6 +152,8 @@ class StateReader {
     (*this)(name, saved);
     if (saved != x) fail(name, "differs");
   }
+  /// Whether there is a value of this name.
+  [[nodiscard]] bool has(std::string_view name) const { return saved_.find(prefix_ + std::string(name)) != saved_.end(); }
 
  private:
   [[noreturn]] void fail(std::string_view name, std::string_view what) const {

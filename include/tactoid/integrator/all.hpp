@@ -5,3 +5,4 @@
 #include <tactoid/integrator/integrator.hpp>
 #include <tactoid/integrator/reference_update.hpp>
 #include <tactoid/integrator/static_newton.hpp>
+#include <tactoid/integrator/subcycled_central_difference.hpp>

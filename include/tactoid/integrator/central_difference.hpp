@@ -42,6 +42,18 @@ struct CentralDifference {
   /// min_time_step, or the stable step below the fixed one.
   template <class System>
   void step(System& system, double until) const {
+    double dt = longest_step(system);
+    const double remaining = until - system.time();
+    if (remaining <= 0.0) return;
+    if (time_step > 0.0) dt = std::min(dt, remaining);
+    else dt = remaining / std::ceil(remaining / dt * (1.0 - 1e-12));
+    advance(system, dt);
+  }
+
+ protected:
+  /// The step that the present state allows, s, wherever the next event is. Throws as step().
+  template <class System>
+  [[nodiscard]] double longest_step(System& system) const {
     const double stable = system.largest_stable_time_step();
     double dt = time_step > 0.0 ? time_step : std::min(safety * stable, max_time_step);
     // Contacts look two steps ahead for what limits the next one: it may not be longer than that.
@@ -50,10 +62,11 @@ struct CentralDifference {
       throw ComputationError(fmt::format(
           "The stable time step at t = {:.6g} s is {:.3g} s, {}: a region is compressed or sheared too far, or a contact is too stiff.",
           system.time(), stable, dt > stable ? "below the fixed step" : "below CentralDifference.min_time_step"));
-    const double remaining = until - system.time();
-    if (remaining <= 0.0) return;
-    if (time_step > 0.0) dt = std::min(dt, remaining);
-    else dt = remaining / std::ceil(remaining / dt * (1.0 - 1e-12));
+    return dt;
+  }
+
+  template <class System>
+  static void advance(System& system, double dt) {
     system.kick(0.5 * (system.last_time_step() + dt));
     system.drift(dt);
     system.evaluate();

@@ -25,6 +25,7 @@
 #include <tactoid/integrator/reference_update.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/body_fields.hpp>
+#include <tactoid/simulation/body_pace.hpp>
 #include <tactoid/simulation/contact_anchoring.hpp>
 #include <tactoid/simulation/decomposition.hpp>
 #include <tactoid/simulation/energy_ledger.hpp>
@@ -71,6 +72,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       body.velocity_lag = velocity_lag;
       fields_[b].prepare(body);
+      if (subcycling()) pace_[b].prepare(body.size());
       std::vector<PrescribedMotion> motions;
       for_each_boundary([&](auto& on, std::size_t) {
         if constexpr (is_motion<decltype(on)>)
@@ -243,6 +245,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       archive.part(name + "/conditions", essential_[b]);
       archive.part(name + "/stable_step", stable_[b]);
       archive(name + "/term_rate", term_rates_[b]);
+      if (subcycling()) archive.part(name + "/pace", pace_[b]);
     });
     for_each_contact([&](auto& between, std::size_t n) { archive.part("contact_" + std::to_string(n), between.contact); });
     for_each_boundary([&](auto& on, std::size_t n) {
@@ -261,10 +264,28 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
     return step;
   }
+  /// The same of each body alone, with the contacts and boundary terms that act on it; in the middle of its own step, with its
+  /// deformation at the beginning of that. A body that is held by multipliers counts as the stiffest one: its reactions are those of single steps.
+  [[nodiscard]] std::array<double, body_count> stable_time_steps() const {
+    std::array<double, body_count> steps{};
+    for_each_body([&](const auto& body, std::size_t b) {
+      const bool multipliers = !essential_[b].empty() && !essential_[b].on_values();
+      steps[b] = multipliers ? largest_stable_time_step() : stable_[b].largest_step(body, term_rates_[b]);
+    });
+    return steps;
+  }
+
+  /// How long the steps of each body are from the next kick at which it is due, s: whole numbers of those of drift(); 0: each of them.
+  void set_body_steps(const std::array<double, body_count>& steps) {
+    static_assert(subcycled<I>, "Bodies have steps of their own under integrators that say `static constexpr bool subcycled = true`.");
+    body_steps_ = steps;
+  }
 
   /// v ← v + Δt M⁻¹ f of all unknowns, with the forces of the last evaluate(); Δt in s.
   void kick(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
+      if constexpr (subcycled<I>)
+        if (subcycling()) pace_[b].begin_step(body, body_steps_[b], time_step, last_step_);
       previous_velocity_[b].resize(body.size(), Vector4::Zero());
       body.for_each_particle([&](std::size_t i) {
         previous_velocity_[b][i] = body.velocity[i];
@@ -282,6 +303,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         previous_[b][i] = body.displacement[i];
         body.displacement[i] += time_step * body.velocity[i];
       });
+      if constexpr (subcycled<I>)
+        if (subcycling()) pace_[b].drift(body, time_step);
     });
     begin_exchange();
     for_each_body([&](auto& body, std::size_t b) {
@@ -412,7 +435,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       body.for_each_particle([&](std::size_t i) { body.force[i].setZero(); });
       if (body.particle_values().identity()) body.for_each_particle([&](std::size_t i) { body.force[i] += fields_[b].force[i]; });
       else body.particle_values().distribute(fields_[b].force, body.force);
-      energies.internal += body.add_internal_forces(time_step, true);
+      energies.internal += add_internal_forces(body, b, time_step);
       energies.kinetic += sum_over_particles(b, body, [&](std::size_t i) {
         return 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
       });
@@ -422,14 +445,22 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     return energies;
   }
 
+  template <class Body>
+  BodyTotals add_internal_forces(Body& body, [[maybe_unused]] std::size_t b, double time_step) {
+    if constexpr (subcycled<I>)
+      if (subcycling()) return pace_[b].add_internal_forces(body, essential_[b], time_step);
+    return body.add_internal_forces(time_step, true);
+  }
+
   /// `from_rest`: the step began where no velocity was known, so that its powers are those of its end.
   void evaluate(bool from_rest) {
     const StepEnergies energies = forces(time_, time_, last_step_);
     for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
     // All bodies are sound: what the step has brought is kept.
-    for_each_body([&](auto& body, std::size_t) {
+    for_each_body([&](auto& body, std::size_t b) {
+      if (!pace_[b].due()) return;
       body.accept_histories();
-      if constexpr (std::decay_t<decltype(body)>::has_director && !synchronous<I>) advance_director(body, last_step_);
+      if constexpr (std::decay_t<decltype(body)>::has_director && !synchronous<I>) advance_director(body, pace_[b].step(last_step_));
     });
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
@@ -472,7 +503,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     ledger_.dissipated += 0.5 * last_step_ * (dissipated_power_ + dissipated_power);
     external_power_ = external_power;
     dissipated_power_ = dissipated_power;
-    if (last_step_ > 0.0) ledger_.note_scale();
+    // Only where all bodies are due are energies those of one instant.
+    if (last_step_ > 0.0 && std::all_of(pace_.begin(), pace_.end(), [](const BodyPace& pace) { return pace.due(); })) ledger_.note_scale();
   }
 
   template <class Place>
@@ -490,6 +522,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   [[nodiscard]] bool inertial() const {
     if constexpr (requires { integrator_.inertia; }) return integrator_.inertia;
     else return true;
+  }
+
+  /// Whether bodies may take steps of their own.
+  [[nodiscard]] bool subcycling() const {
+    if constexpr (subcycled<I>) return integrator_.max_ratio > 1;
+    else return false;
   }
 
   /// Half a step with the forces at the present state; those of the conditions are the last ones.
@@ -542,6 +580,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       body.displacement = previous_[b];
       if (!previous_velocity_[b].empty()) body.velocity = previous_velocity_[b];
       std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
+      pace_[b].forget();
       fields_[b].refresh(body, 0.0);
     });
     time_ -= last_step_;
@@ -552,7 +591,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Leaves to each process its part of the bodies, whose first state every process has evaluated.
   void decompose(Ranks& ranks) {
     std::vector<SharedBody> parts;
-    for_each_body([&](auto& body, std::size_t b) { parts.push_back(shared_body(body, fields_[b], b)); });
+    for_each_body([&](auto& body, std::size_t b) {
+      parts.push_back(shared_body(body, fields_[b], b));
+      if (subcycling()) parts.back().whole.push_back(&pace_[b].internal);
+    });
     decomposition_ = ranks.decompose(std::move(parts));
     for_each_body([&](auto& body, std::size_t b) { body.share_with(decomposition_->share(b)); });
   }
@@ -625,6 +667,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   std::array<BodyFields, body_count> fields_;
   std::array<EssentialConditions, body_count> essential_;
   std::array<StableStep, body_count> stable_;
+  std::array<BodyPace, body_count> pace_;
+  std::array<double, body_count> body_steps_{};  // asked for by an integrator that sub-cycles, s
   std::array<double, body_count> term_rates_{};  // ω² of contacts and boundary terms, 1/s²
   std::array<Field, body_count> previous_, previous_velocity_;  // before the last drift and the last kick
   bool moved_ = false;
