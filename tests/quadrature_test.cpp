@@ -1,6 +1,9 @@
 // The tables of the quadrature rules: row and column conditions, volumes, colours, errors, and the concept.
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -143,6 +146,38 @@ void check_nodal(const PointCloud<D>& cloud, const std::string& name) {
   CHECK(table.value_based());
 }
 
+/// A table that is not corrected yet, its weights, and the integrals over the boundary that it must meet.
+struct Uncorrected {
+  PointTable table;
+  std::vector<double> weights;
+  Field boundary;
+};
+Uncorrected uncorrected(const PointCloud<3>& cloud, double support) {
+  Uncorrected u{NodalCentroids{.consistency_tolerance = 0.0}.build(cloud, Rkpm<3>{.support = support}), {}, {}};
+  std::vector<double> reach(cloud.size(), 0.0);  // any weights that vanish at the rim of a row do
+  for (std::size_t q = 0; q < u.table.points(); ++q)
+    for (const TableEntry& entry : u.table.row(q))
+      reach[q] = std::max(reach[q], 1.05 * shortest(u.table, u.table.particle_position[entry.particle].head<3>() - u.table.position[q]).norm());
+  for (std::size_t q = 0; q < u.table.points(); ++q)
+    for (std::size_t e = u.table.offsets[q]; e < u.table.offsets[q + 1]; ++e) {
+      const Vector3 d = shortest(u.table, u.table.particle_position[u.table.entries[e].particle].head<3>() - u.table.position[q]);
+      u.weights.push_back(is_padding(u.table, q, e) ? 0.0 : CubicBSpline::value(d.norm() / reach[q]));
+    }
+  for (const Point<3>& b : boundary_normal_integrals(cloud)) u.boundary.push_back(pad(b));
+  return u;
+}
+double column_error(const Uncorrected& u) {
+  Field sum = u.boundary;
+  double largest = 0.0, size = 0.0;
+  for (std::size_t q = 0; q < u.table.points(); ++q)
+    for (const TableEntry& entry : u.table.row(q)) sum[entry.particle] -= u.table.volume[q] * Vector4(entry.gradient[0], entry.gradient[1], entry.gradient[2], 0.0);
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    largest = std::max(largest, sum[i].norm());
+    size = std::max(size, u.boundary[i].norm());
+  }
+  return largest / size;
+}
+
 }  // namespace
 
 TEST_CASE("NodalCentroids keeps rows, columns, volumes and colours: 3D") {
@@ -251,6 +286,64 @@ TEST_CASE("GaussCells samples true shape functions") {
   double a = 0.0, b = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) a += f[i].dot(at_particles[i]), b += g[i].dot(u[i]);
   CHECK(a == test::relative(b).epsilon(1e-12));
+}
+
+TEST_CASE("the correction of a large body takes about as many iterations as that of a small one: the coarse space does the smooth part") {
+  const auto iterations = [](const PointCloud<3>& cloud) {
+    Uncorrected u = uncorrected(cloud, 2.0);
+    CHECK(column_error(u) > 1e-4);
+    const ConsistencyReport report = make_consistent(u.table, u.weights, u.boundary);
+    CHECK(column_error(u) < 1e-11);
+    CHECK(report.residual < 1e-12);
+    return report.iterations;
+  };
+  const auto jittered = [](int cells) { return jitter(box({.size = {1.0, 1.0, 1.0}, .cells = {cells, cells, cells}}), 0.2); };
+  const int small = iterations(jittered(11));  // 1728 particles: Jacobi's preconditioner alone
+  CHECK(iterations(jittered(18)) < small);     // 6859; without a coarse space twice as many
+  CHECK(iterations(disc({.radius = 1.0, .height = 0.4, .core_cells = 14, .rings = 7, .layers = 8})) < 200);
+}
+
+TEST_CASE("the correction of a body in two pieces, each with affine functions of its own") {
+  PointCloud<3> two = box({.size = {1.0, 1.0, 1.0}, .cells = {13, 13, 13}});
+  const PointCloud<3> one = two;
+  const auto n = static_cast<Index>(one.size());
+  for (Point<3> X : one.positions) two.positions.push_back(X + Point<3>(3.0, 0.0, 0.0));
+  for (auto cell : one.cells) {
+    for (Index& i : cell) i += n;
+    two.cells.push_back(cell);
+  }
+  for (auto facet : one.facets) {
+    for (Index& i : facet) i += n;
+    two.facets.push_back(facet);
+  }
+  two.cell_regions.insert(two.cell_regions.end(), one.cell_regions.begin(), one.cell_regions.end());
+  Uncorrected u = uncorrected(two, 2.0);
+  REQUIRE(u.table.particles >= 5000);
+  make_consistent(u.table, u.weights, u.boundary);
+  CHECK(column_error(u) < 1e-11);
+}
+
+TEST_CASE("quadratic splines of a coarse space hold affine functions, and wrap around a periodic box") {
+  for (const bool periodic : {false, true}) {
+    CAPTURE(periodic);
+    const PointCloud<3> cloud = box({.size = {2.0, 1.0, 1.0}, .cells = {10, 5, 5}, .periodic = {periodic, false, false}});
+    const PointTable table = NodalCentroids{}.build(cloud, Rkpm<3>{});
+    const detail::CoarseSpace space(table, 8.0, 1000);
+    const Eigen::MatrixXd affine = space.affine(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(space.size())));
+    REQUIRE(affine.cols() == (periodic ? 3 : 4));
+    CHECK((affine.transpose() * affine - Eigen::MatrixXd::Identity(affine.cols(), affine.cols())).norm() < 1e-12);
+    const auto value = [&](const Vector3& X, Eigen::Index column) {
+      double sum = 0.0, ones = 0.0;
+      space.for_each(space.at(X), [&](std::size_t node, double w) { sum += w * affine(static_cast<Eigen::Index>(node), column), ones += w; });
+      CHECK(ones == doctest::Approx(1.0).epsilon(1e-13));
+      return sum;
+    };
+    const Vector3 a(0.1, 0.9, 0.3), b(1.7, 0.2, 0.8);
+    for (Eigen::Index column = 0; column < affine.cols(); ++column) {
+      CHECK(std::abs(value(0.5 * (a + b), column) - 0.5 * (value(a, column) + value(b, column))) < 1e-13);
+      if (periodic) CHECK(std::abs(value(a, column) - value(a + Vector3(2.0, 0.0, 0.0), column)) < 1e-13);
+    }
+  }
 }
 
 TEST_CASE("A support that is too small is an error that names the point, the neighbours and the condition number") {

@@ -1,0 +1,239 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <tactoid/core/parallel.hpp>
+#include <tactoid/core/tensor.hpp>
+#include <tactoid/quadrature/point_table.hpp>
+
+namespace tactoid::detail {
+
+/// Smooth fields of a body, in few unknowns: quadratic B-splines on a regular grid around its particles, several spacings wide.
+/// They hold the affine functions exactly.
+class CoarseSpace {
+ public:
+  /// Grid cells of about `particles_per_cell` particles, larger ones where there would be more than `max_nodes` nodes.
+  CoarseSpace(const PointTable& table, double particles_per_cell, std::size_t max_nodes) : dimension_(table.dimension) {
+    Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Vector4& X : table.particle_position) {
+      low = low.cwiseMin(X.head<3>());
+      high = high.cwiseMax(X.head<3>());
+    }
+    double box = 1.0;
+    for (int k = 0; k < dimension_; ++k) {
+      periodic_[k] = table.period[k] > 0.0;
+      length_[k] = periodic_[k] ? table.period[k] : high[k] - low[k];
+      box *= length_[k];
+    }
+    origin_ = low;
+    double width = std::pow(box * particles_per_cell / static_cast<double>(table.particles), 1.0 / dimension_);
+    do {
+      nodes_ = 1;
+      for (int k = 0; k < dimension_; ++k) {
+        cells_[k] = std::max(periodic_[k] ? 3 : 1, static_cast<int>(std::lround(length_[k] / width)));
+        count_[k] = cells_[k] + (periodic_[k] ? 0 : 2);
+        nodes_ *= static_cast<std::size_t>(count_[k]);
+      }
+      width *= 1.1;
+    } while (nodes_ > max_nodes && cells_ != std::array<int, 3>{1, 1, 1});
+  }
+
+  [[nodiscard]] std::size_t size() const { return nodes_; }  ///< number of splines
+
+  /// Coefficients of the affine functions that are periodic as the body is, of the nodes where `used` is not 0, orthonormal: a column for each.
+  [[nodiscard]] Eigen::MatrixXd affine(const Eigen::VectorXd& used) const {
+    int columns = 1;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(nodes_), 4);
+    for (int k = 0; k < dimension_; ++k)
+      if (!periodic_[k]) {
+        const std::size_t stride = static_cast<std::size_t>(k == 0 ? 1 : k == 1 ? count_[0] : count_[0] * count_[1]);
+        for (std::size_t i = 0; i < nodes_; ++i) A(static_cast<Eigen::Index>(i), columns) = static_cast<double>(i / stride % static_cast<std::size_t>(count_[k]));
+        ++columns;
+      }
+    for (Eigen::Index i = 0; i < A.rows(); ++i)
+      if (used[i] == 0.0) A.row(i).setZero();
+    for (int j = 0; j < columns; ++j) {
+      for (int k = 0; k < j; ++k) A.col(j) -= A.col(k).dot(A.col(j)) * A.col(k);
+      A.col(j) /= A.col(j).norm();
+    }
+    return A.leftCols(columns);
+  }
+
+  /// The splines that do not vanish at a place: 3 in every direction.
+  struct Splines {
+    std::array<int, 3> first = {0, 0, 0};  ///< number of the first one in each direction
+    double value[3][3] = {{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
+  };
+  [[nodiscard]] Splines at(const Vector3& X) const {
+    Splines splines;
+    for (int k = 0; k < dimension_; ++k) {
+      double s = (X[k] - origin_[k]) / length_[k] * cells_[k];
+      if (periodic_[k]) s -= cells_[k] * std::floor(s / cells_[k]);
+      splines.first[k] = std::clamp(static_cast<int>(s), 0, cells_[k] - 1);
+      const double t = s - splines.first[k];
+      splines.value[k][0] = 0.5 * (1.0 - t) * (1.0 - t);
+      splines.value[k][1] = 0.5 + t * (1.0 - t);
+      splines.value[k][2] = 0.5 * t * t;
+    }
+    return splines;
+  }
+  /// f(node, value) for each of them.
+  template <class F>
+  void for_each(const Splines& splines, const F& f) const {
+    for (int c = 0; c < (dimension_ > 2 ? 3 : 1); ++c)
+      for (int b = 0; b < (dimension_ > 1 ? 3 : 1); ++b) {
+        const int row = count_[0] * (wrapped(1, splines.first[1] + b) + count_[1] * wrapped(2, splines.first[2] + c));
+        const double value = splines.value[1][b] * splines.value[2][c];
+        for (int a = 0; a < 3; ++a)
+          f(static_cast<std::size_t>(row + wrapped(0, splines.first[0] + a)), splines.value[0][a] * value);
+      }
+  }
+
+ private:
+  [[nodiscard]] int wrapped(int k, int i) const { return i < count_[k] ? i : i - count_[k]; }
+
+  int dimension_;
+  Vector3 origin_ = Vector3::Zero();
+  std::array<double, 3> length_ = {1.0, 1.0, 1.0};
+  std::array<int, 3> cells_ = {1, 1, 1}, count_ = {1, 1, 1};
+  std::array<bool, 3> periodic_ = {};
+  std::size_t nodes_ = 0;
+};
+
+/// The part of a preconditioner that acts on smooth fields: P E⁻¹ Pᵀ, with P from splines to particles and E near Pᵀ S P, between
+/// projections that leave out the affine functions: these are in the null space of S, where E⁻¹ would make much of round-off.
+class CoarseCorrection {
+ public:
+  /// Of the operator S (AffineResidual) of a table.
+  template <class Operator>
+  CoarseCorrection(const PointTable& table, const Operator& S) : table_(table), space_(table, particles_per_cell, most_nodes), coarse_(space_.size()) {
+    for (const Vector4& X : table.particle_position) splines_.push_back(space_.at(X.head<3>()));
+    factorize(assemble(S));
+    affine_ = space_.affine(scale_);
+  }
+
+  /// z ← z + P E⁻¹ Pᵀ r, all three components.
+  void add(const Field& r, Field& z) {
+    std::fill(coarse_.begin(), coarse_.end(), Vector4::Zero());
+    for (std::size_t i = 0; i < r.size(); ++i)
+      space_.for_each(splines_[i], [&](std::size_t node, double value) { coarse_[node] += value * r[i]; });
+    take_off_affine();
+    solve();
+    take_off_affine();
+    parallel_for(z.size(), [&](std::size_t i) {
+      Vector4 sum = z[i];
+      space_.for_each(splines_[i], [&](std::size_t node, double value) { sum += value * coarse_[node]; });
+      z[i] = sum;
+    });
+  }
+
+ private:
+  using Factor = Eigen::SparseMatrix<double>;
+  static constexpr double particles_per_cell = 64.0;
+  static constexpr std::size_t most_nodes = 2000;
+  static constexpr std::size_t stride = 8;        // of the rows that E is made of
+  static constexpr double regularization = 1e-6;  // of E, over its diagonal: affine functions are in its null space
+
+  void take_off_affine() {
+    for (Eigen::Index k = 0; k < affine_.cols(); ++k) {
+      Vector4 part = Vector4::Zero();
+      for (std::size_t i = 0; i < coarse_.size(); ++i) part += affine_(static_cast<Eigen::Index>(i), k) * coarse_[i];
+      for (std::size_t i = 0; i < coarse_.size(); ++i) coarse_[i] -= affine_(static_cast<Eigen::Index>(i), k) * part;
+    }
+  }
+
+  /// Σ_q over some of the rows, which stand for all: smooth fields feel neighbouring rows alike.
+  template <class Operator>
+  [[nodiscard]] Eigen::MatrixXd assemble(const Operator& S) const {
+    const auto n = static_cast<Eigen::Index>(space_.size());
+    Eigen::MatrixXd E = Eigen::MatrixXd::Zero(n, n);
+    std::vector<int> local(space_.size(), -1);  // number of a node in the row
+    std::vector<Eigen::Index> nodes;
+    std::vector<double> block;          // Pᵀ W P of the row
+    std::vector<Vector4> fits;          // Pᵀ W B
+    std::array<std::pair<int, double>, 27> splines;
+    for (std::size_t q = 0; q < table_.points(); q += stride) {
+      nodes.clear();
+      S.for_each_weighted(q, [&](Index particle, double, const Vector4&) {
+        space_.for_each(splines_[particle], [&](std::size_t node, double) {
+          if (local[node] < 0) local[node] = static_cast<int>(nodes.size()), nodes.push_back(static_cast<Eigen::Index>(node));
+        });
+      });
+      const std::size_t m = nodes.size();
+      block.assign(m * m, 0.0);
+      fits.assign(m, Vector4::Zero());
+      S.for_each_weighted(q, [&](Index particle, double w, const Vector4& basis) {
+        std::size_t count = 0;
+        space_.for_each(splines_[particle], [&](std::size_t node, double value) { splines[count++] = {local[node], value}; });
+        for (std::size_t a = 0; a < count; ++a) {
+          const double weighted = w * splines[a].second;
+          fits[static_cast<std::size_t>(splines[a].first)] += weighted * basis;
+          double* row = block.data() + static_cast<std::size_t>(splines[a].first) * m;
+          for (std::size_t b = 0; b < count; ++b) row[splines[b].first] += weighted * splines[b].second;
+        }
+      });
+      const double factor = static_cast<double>(stride) * table_.volume[q] * table_.volume[q];
+      for (std::size_t a = 0; a < m; ++a)
+        for (std::size_t b = 0; b < m; ++b) E(nodes[b], nodes[a]) += factor * (block[a * m + b] - fits[a].dot(fits[b]));
+      for (const Eigen::Index node : nodes) local[static_cast<std::size_t>(node)] = -1;
+    }
+    return E;
+  }
+
+  /// E x = coarse_, all components in one sweep over the factors.
+  void solve() {
+    const auto& order = solver_.permutationP().indices();
+    const auto& L = solver_.matrixL().nestedExpression();
+    const auto& D = solver_.vectorD();
+    const auto n = static_cast<Eigen::Index>(coarse_.size());
+    ordered_.resize(coarse_.size());
+    const auto x = [&](Eigen::Index i) -> Vector4& { return ordered_[static_cast<std::size_t>(i)]; };
+    for (Eigen::Index i = 0; i < n; ++i) x(order[i]) = scale_[i] * coarse_[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Vector4 known = x(j);
+      for (Factor::InnerIterator it(L, j); it; ++it)
+        if (it.row() > j) x(it.row()) -= it.value() * known;
+    }
+    for (Eigen::Index j = n - 1; j >= 0; --j) {
+      Vector4 sum = x(j) / D[j];
+      for (Factor::InnerIterator it(L, j); it; ++it)
+        if (it.row() > j) sum -= it.value() * x(it.row());
+      x(j) = sum;
+    }
+    for (Eigen::Index i = 0; i < n; ++i) coarse_[static_cast<std::size_t>(i)] = scale_[i] * x(order[i]);
+  }
+
+  void factorize(Eigen::MatrixXd E) {
+    const double largest = E.diagonal().maxCoeff();
+    // Splines that reach hardly any particle are left out.
+    scale_ = E.diagonal().unaryExpr([&](double d) { return d > 1e-2 * largest ? 1.0 / std::sqrt(d) : 0.0; });
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index j = 0; j < E.cols(); ++j)
+      for (Eigen::Index i = j; i < E.rows(); ++i) {
+        const double value = i == j ? 1.0 + regularization : scale_[i] * E(i, j) * scale_[j];
+        if (value != 0.0) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
+      }
+    Factor scaled(E.rows(), E.cols());
+    scaled.setFromTriplets(entries.begin(), entries.end());
+    solver_.compute(scaled);
+  }
+
+  const PointTable& table_;
+  CoarseSpace space_;
+  std::vector<CoarseSpace::Splines> splines_;  // of the particles
+  Eigen::MatrixXd affine_;
+  Eigen::VectorXd scale_;
+  Field coarse_, ordered_;  // values at the nodes, in their order and in that of the factors
+  Eigen::SimplicialLDLT<Factor> solver_;
+};
+
+}  // namespace tactoid::detail
