@@ -110,6 +110,12 @@ struct LigandReceptor {
   }
   /// See SurfaceContactEngine.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) { return engine.apply(law(), a, b, area); }
+  /// Bonds are carried along with the surface, also where particles slide along it: their number stays.
+  void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&) { engine.redistribute(surface); }
+  /// Throws ParameterError for two passes.
+  void require_redistributable() const {
+    if (two_pass) throw ParameterError("Redistribution: LigandReceptor.two_pass keeps particles where they are.");
+  }
   /// Bound of ω² at the present gaps, 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law(), a, b);

@@ -9,6 +9,7 @@
 #include <tactoid/contact/gap_law.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/contact/tracking.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
@@ -129,9 +130,15 @@ class ContactPass {
   [[nodiscard]] const FacetSurface<D>& master() const { return master_; }             ///< on which they look for closest points
   [[nodiscard]] const FacetQuadrature<D>& quadrature() const { return quadrature_; }  ///< of the slave's facets
 
-  /// For checkpoints: the closest points that are followed.
+  /// The slave's particles slid along its surface: the reference area of each point is that of the matter that is there now.
+  void redistribute(const SurfaceTransfer& surface) { quadrature_.area = surface.carry(quadrature_.weights(), quadrature_.area); }
+
+  /// For checkpoints: the closest points that are followed, and the areas, which redistribution changes.
   template <class Archive>
-  void state(Archive& archive) { archive.part("tracker", tracker_); }
+  void state(Archive& archive) {
+    archive.part("tracker", tracker_);
+    archive("area", quadrature_.area);
+  }
 
  private:
   struct State {
@@ -170,6 +177,12 @@ class SurfaceContactEngine {
     TermEnergy total = forth_.visit([&](auto& pass) { return pass.apply(law, a, b, area, factor); });
     if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.apply(law, b, a, area, factor); });
     return total;
+  }
+
+  /// A's particles slid along its surface; see ContactPass.
+  void redistribute(const SurfaceTransfer& surface) {
+    if (!back_.empty()) throw ParameterError("Redistribution: a contact in two passes keeps its particles.");
+    forth_.visit([&](auto& pass) { pass.redistribute(surface); });
   }
 
   /// Gershgorin's bound of ω² at the gaps of the last call of apply, 1/s².
