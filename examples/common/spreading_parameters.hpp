@@ -67,6 +67,7 @@ struct SpreadingParameters {
   double bond_density = 500e12;       ///< N_b, 1/m²
   double binding_energy = 0.024e-18;  ///< σ_b, J
   double bond_range = 100e-9;         ///< ε, m
+  bool mobile_bonds = false;          ///< as many per current area everywhere, with the force of a fluid surface; else per reference area
   double surface_tension = 0.072e-3;  ///< σ₀, N/m
   double surface_smoothing = 0.0;     ///< share of its size below which a facet's tension fades
 
@@ -138,6 +139,7 @@ struct SpreadingParameters {
     options.add_quantity("binding-energy", &binding_energy, Quantity::energy, Range::non_negative(),
                          "Energy of a bond");
     options.add_quantity("bond-range", &bond_range, Quantity::length, Range::positive(), "Range epsilon of the bonds");
+    options.add("mobile-bonds", &mobile_bonds, "As many bonds per present area everywhere, of receptors that drift in a fluid surface; else per reference area");
     options.add_quantity("surface-tension", &surface_tension, Quantity::surface_tension, Range::non_negative(),
                          "Surface tension of the cell");
     options.add("surface-smoothing", &surface_smoothing, Range::between(0.0, 0.9), "Share of its first size below which the tension of a facet fades");
@@ -245,7 +247,8 @@ struct SpreadingParameters {
     return {.solid_ratio = hourglass, .fluid_modulus = fluid_hourglass, .fluid_viscosity = fluid_hourglass_viscosity};
   }
   [[nodiscard]] LigandReceptor ligand_receptor() const {
-    return {.bond_density = bond_density, .binding_energy = binding_energy, .range = bond_range};
+    return {.bond_density = bond_density, .binding_energy = binding_energy, .range = bond_range,
+            .area = mobile_bonds ? ContactArea::mobile : ContactArea::reference};
   }
   [[nodiscard]] VanDerWaals van_der_waals_force() const {
     return {.strength = van_der_waals, .range = van_der_waals_range, .reaction = van_der_waals_reaction};

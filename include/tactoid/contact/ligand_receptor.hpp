@@ -91,7 +91,7 @@ struct LigandReceptor {
   double range = 100e-9;                      ///< ε, gap of lowest energy, m
   double floor = 0.3;                         ///< gap below which the traction is linear, × ε, in (0, 1)
   double cutoff = 20.0;                       ///< gap beyond which there is no force, × ε, > √(5/3)
-  ContactArea area = ContactArea::reference;  ///< bonds per reference or per current area of A
+  ContactArea area = ContactArea::reference;  ///< bonds per reference or per current area of A, or mobile
   bool two_pass = false;                      ///< both bodies' facets are sampled, with half the weight each
   int points_per_direction = 2;               ///< Gauss points along each side of a facet, 1 to 4
   SurfaceContactEngine engine{};              ///< set by initialize()

@@ -53,10 +53,9 @@ class SurfaceTransfer {
   };
 
   SurfaceTransfer() = default;
-  /// Of a surface with so many facets.
-  SurfaceTransfer(std::vector<Slide> slides, std::size_t facets) : slides_(std::move(slides)), facets_(facets) {}
+  /// Curve by curve.
+  explicit SurfaceTransfer(std::vector<Slide> slides) : slides_(std::move(slides)) {}
 
-  [[nodiscard]] std::size_t facets() const { return facets_; }                 ///< of the surface
   [[nodiscard]] const std::vector<Slide>& slides() const { return slides_; }   ///< curve by curve
 
   /// Calls visit(new bin, old bin, share of the old one) for all that overlap; bins are the parts of the facets that belong to the
@@ -112,7 +111,6 @@ class SurfaceTransfer {
   }
 
   std::vector<Slide> slides_;
-  std::size_t facets_ = 0;
 };
 
 /// A contact or boundary term that keeps amounts per facet of a body whose particles are redistributed has

@@ -35,6 +35,7 @@ struct ReferenceReport {
 /// those inside follow (see Body::update_reference). So neither crowds nor gaps grow, and cells and facets go on to be the volume of the body.
 struct Redistribution {
   double share = 1.0;  ///< of the way that is gone in an update; in (0, 1]
+  double corner = 0.35;  ///< turn of the surface at a particle from which on there is an edge, where one stays, rad; in (0, π]
 
   /// Throws ParameterError unless share is in (0, 1].
   void validate() const {

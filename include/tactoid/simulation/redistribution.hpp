@@ -36,7 +36,7 @@ namespace detail {
 template <int D>
   requires(D == 2)
 SurfaceTransfer::Slide slide_along(const FacetCurve& curve, const PointCloud<D>& now, const std::vector<Point<D>>& first,
-                                   const std::vector<char>& held, double share, std::vector<Point<D>>& positions) {
+                                   const std::vector<char>& held, const Redistribution& parameters, std::vector<Point<D>>& positions) {
   const std::size_t n = curve.facets.size();
   SurfaceTransfer::Slide slide{curve, {}, {}, {}};
   std::vector<double> arc(n + 1, 0.0), first_arc(n + 1, 0.0);
@@ -52,6 +52,12 @@ SurfaceTransfer::Slide slide_along(const FacetCurve& curve, const PointCloud<D>&
     first_arc[k + 1] = first_arc[k] + (first[curve.nodes[k + 1]] - first[curve.nodes[k]]).norm();
   }
   const auto direction = [&](std::size_t k) -> Point<D> { return (x[k + 1] - x[k]) / slide.lengths[k]; };
+  // Corners stay, and the curve has another slope on each side of them.
+  std::vector<char> corner(n + 1, 0);
+  for (std::size_t k = curve.closed ? 0 : 1; k < n; ++k) {
+    const double along = direction(k == 0 ? n - 1 : k - 1).dot(direction(k));
+    if (held[curve.nodes[k]] || along < std::cos(parameters.corner)) corner[k] = 1;
+  }
   std::vector<Point<D>> slope(n + 1);
   for (std::size_t k = 0; k <= n; ++k) {
     const bool end = k == 0 || k == n;
@@ -63,21 +69,46 @@ SurfaceTransfer::Slide slide_along(const FacetCurve& curve, const PointCloud<D>&
     const std::size_t before = k == 0 ? n - 1 : k - 1, after = k == n ? 0 : k;
     slope[k] = (slide.lengths[after] * direction(before) + slide.lengths[before] * direction(after)) / (slide.lengths[before] + slide.lengths[after]);
   }
-  for (std::size_t a = 0; a < n;) {  // from one node that stays to the next
-    std::size_t b = a + 1;
-    while (b < n && !held[curve.nodes[b]]) ++b;
-    std::size_t facet = a;
-    for (std::size_t k = a + 1; k < b; ++k) {
-      const double goal = arc[a] + (arc[b] - arc[a]) * (first_arc[k] - first_arc[a]) / (first_arc[b] - first_arc[a]);
-      const double s = arc[k] + share * (goal - arc[k]);
-      while (facet > a && arc[facet] > s) --facet;
-      while (facet + 1 < b && arc[facet + 1] < s) ++facet;
-      const double L = slide.lengths[facet], t = (s - arc[facet]) / L;
-      slide.places[k] = static_cast<double>(facet) + t;
-      positions[curve.nodes[k]] = (1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t) * x[facet] + t * (1.0 - t) * (1.0 - t) * L * slope[facet] +
-                                  t * t * (3.0 - 2.0 * t) * x[facet + 1] - t * t * (1.0 - t) * L * slope[facet + 1];
+  // The edges divide the curve. Each is at the place of a particle, before and after: the same one, unless another would divide the particles
+  // better by more than one.
+  std::vector<std::size_t> edges{0}, labels{0};
+  for (std::size_t k = 1; k < n; ++k) {
+    if (!corner[k]) continue;
+    const double goal = first_arc[n] * arc[k] / arc[n];
+    std::size_t label = k;
+    if (!held[curve.nodes[k]]) {
+      const auto after = static_cast<std::size_t>(std::lower_bound(first_arc.begin(), first_arc.end(), goal) - first_arc.begin());
+      const double best = static_cast<double>(after) - (first_arc[after] - goal) / (first_arc[after] - first_arc[after - 1]);
+      if (std::abs(best - static_cast<double>(k)) > 1.0) label = static_cast<std::size_t>(std::lround(best));
     }
-    a = b;
+    edges.push_back(k);
+    labels.push_back(label);
+  }
+  edges.push_back(n);
+  labels.push_back(n);
+  for (std::size_t e = 1; e < labels.size(); ++e)
+    if (labels[e] <= labels[e - 1]) labels = edges;  // too close for all of them to move
+  const auto place = [&](std::size_t k, double s) {  // at the arc length s
+    std::size_t facet = static_cast<std::size_t>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
+    facet = std::clamp<std::size_t>(facet, 1, n) - 1;
+    const double L = slide.lengths[facet], t = (s - arc[facet]) / L;
+    const Point<D> leaving = corner[facet] ? direction(facet) : slope[facet], arriving = corner[facet + 1] ? direction(facet) : slope[facet + 1];
+    slide.places[k] = static_cast<double>(facet) + t;
+    positions[curve.nodes[k]] = (1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t) * x[facet] + t * (1.0 - t) * (1.0 - t) * L * leaving +
+                                t * t * (3.0 - 2.0 * t) * x[facet + 1] - t * t * (1.0 - t) * L * arriving;
+  };
+  for (std::size_t e = 0; e + 1 < labels.size(); ++e) {
+    const std::size_t a = labels[e], b = labels[e + 1];
+    const double from = arc[edges[e]], to = arc[edges[e + 1]];
+    const bool stay = a == edges[e] && b == edges[e + 1];  // else they all move at once
+    for (std::size_t k = a + 1; k < b; ++k) {
+      const double goal = from + (to - from) * (first_arc[k] - first_arc[a]) / (first_arc[b] - first_arc[a]);
+      place(k, stay ? arc[k] + parameters.share * (goal - arc[k]) : goal);
+    }
+    if (b < n) {
+      slide.places[b] = static_cast<double>(edges[e + 1]);
+      positions[curve.nodes[b]] = x[edges[e + 1]];
+    }
   }
   return slide;
 }
@@ -172,7 +203,7 @@ template <Kernel K>
   std::vector<SurfaceTransfer::Slide> slides;
   std::vector<char> fixed = held;
   std::vector<Point<2>> moved = now.positions;
-  for (const FacetCurve& curve : facet_curves(surface)) slides.push_back(detail::slide_along(curve, now, first.positions, held, parameters.share, moved));
+  for (const FacetCurve& curve : facet_curves(surface)) slides.push_back(detail::slide_along(curve, now, first.positions, held, parameters, moved));
   PointCloud<2> next = now;
   next.positions = moved;
   // Unit normals at the nodes.
@@ -202,7 +233,8 @@ template <Kernel K>
   }
   if (!(std::abs(offset) < 0.1 * facet_size))
     throw GeometryError(fmt::format("The particles cannot be redistributed: the surface would have to move by {:.3g} m to enclose the volume of the points.", offset));
-  detail::relax_inside(first, fixed, parameters.share, next.positions);
+  detail::relax_inside(first, fixed, 1.0, next.positions);
+  if (getenv("RDEBUG")) fmt::print(stderr, "offset {:.3g} m, facet {:.3g}\n", offset, facet_size);
   for (const auto& cell : next.cells) {
     const Corners<2> corners = cell_corners(next, cell);
     for (const double s : {0.0, 1.0})
@@ -211,7 +243,7 @@ template <Kernel K>
           throw GeometryError(fmt::format("The particles cannot be redistributed: a cell at ({:.4g}, {:.4g}) m would be inverted.", corners[0][0], corners[0][1]));
   }
   now.positions = std::move(next.positions);
-  return {std::move(slides), surface.facets.size()};
+  return SurfaceTransfer(std::move(slides));
 }
 
 }  // namespace tactoid

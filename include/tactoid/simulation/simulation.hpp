@@ -431,12 +431,14 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
     if (done.updates == 0) return done;
     const double before = ledger_.total();
+    const EnergyLedger was = ledger_;
     std::array<Field, body_count> velocities;  // at the present instant, which the forces of the table before have told
     for (std::size_t b = 0; b < body_count; ++b) velocities[b] = fields_[b].velocity;
     const StepEnergies energies = forces(evaluated_, time_, 0.0);
     for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
     for (std::size_t b = 0; b < body_count; ++b) fields_[b].velocity = std::move(velocities[b]);
     take_stored(energies);
+    if (getenv("RDEBUG")) fmt::print(stderr, "t {:.4g} kin {:.3g} strain {:.3g} stab {:.3g} adh {:.3g} surf {:.3g} dist {:.3g}\n", time_, ledger_.kinetic - was.kinetic, ledger_.strain-was.strain, ledger_.stabilization-was.stabilization, ledger_.adhesion-was.adhesion, ledger_.surface-was.surface, done.distortion);
     done.lost_energy = before - ledger_.total();
     ledger_.reference_updates += done.lost_energy;
     return done;
