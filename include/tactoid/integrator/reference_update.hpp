@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,14 +33,15 @@ struct ReferenceReport {
 
 /// How particles of fluids are redistributed when the reference of their body is updated, in planes and meridian sections. A fluid
 /// has no preferred particles: those on its surface slide along it towards the relative spacing of the first configuration,
-/// those inside follow (see Body::update_reference). So neither crowds nor gaps grow, and cells and facets go on to be the volume of the body.
+/// those inside follow (see Body::update_reference). So neither crowds nor gaps grow, and the cells go on to be the volume of the body.
 struct Redistribution {
-  double share = 1.0;  ///< of the way that is gone in an update; in (0, 1]
-  double corner = 0.35;  ///< turn of the surface at a particle from which on there is an edge, where one stays, rad; in (0, π]
+  double share = 1.0;    ///< of the way along the surface that is gone in an update; in (0, 1]
+  double corner = 0.35;  ///< turn of the surface at a particle above which it is an edge, at which there remains one, rad; in (0, π]
 
-  /// Throws ParameterError unless share is in (0, 1].
+  /// Throws ParameterError for a value out of its range.
   void validate() const {
     if (!(share > 0.0 && share <= 1.0)) reject("Redistribution.share", share, "", "above 0 and at most 1");
+    if (!(corner > 0.0 && corner <= std::numbers::pi)) reject("Redistribution.corner", corner, "rad", "above 0 and at most pi");
   }
 };
 

@@ -32,7 +32,8 @@ struct RedistributedParticles {
 namespace detail {
 
 /// Positions of the nodes of a curve that slide towards the relative spacing that they had first, and their places on the curve as
-/// it is. The curve is the cubic spline through the nodes with slopes of parabolas; across an axis it goes on as its mirror image.
+/// it is: the cubic spline through the nodes with slopes of parabolas, which meets an axis at a right angle. Where it turns by more than
+/// Redistribution::corner, and at nodes that are held, it has an edge, at which there is a node afterwards too.
 template <int D>
   requires(D == 2)
 SurfaceTransfer::Slide slide_along(const FacetCurve& curve, const PointCloud<D>& now, const std::vector<Point<D>>& first,
@@ -113,10 +114,10 @@ SurfaceTransfer::Slide slide_along(const FacetCurve& curve, const PointCloud<D>&
   return slide;
 }
 
-/// Moves the free particles inside to where the displacement from their first positions is the mean of their neighbours along the edges of the
-/// cells, weighted by 1/length² of the first edges: a uniform state, and every affine one, stays. Held are those with a value in `fixed`.
+/// Moves the particles that are not `fixed` to where the displacement from their first positions is the mean of that of their neighbours along
+/// the edges of the cells, weighted by 1/length² of the first edges: what has not been deformed stays. Particles on an axis stay there.
 template <int D>
-void relax_inside(const PointCloud<D>& first, const std::vector<char>& fixed, double share, std::vector<Point<D>>& positions) {
+void relax_inside(const PointCloud<D>& first, const std::vector<char>& fixed, std::vector<Point<D>>& positions) {
   const std::size_t n = first.size();
   const auto is_held = [&](std::size_t i, int c) { return fixed[i] != 0 || (c == 0 && first.on_axis(first.positions[i])); };
   for (int c = 0; c < D; ++c) {
@@ -142,7 +143,7 @@ void relax_inside(const PointCloud<D>& first, const std::vector<char>& fixed, do
     if (solver.info() != Eigen::Success) throw GeometryError("The particles cannot be redistributed: some hang together with nothing that stays.");
     const Eigen::VectorXd u = solver.solve(right);
     for (std::size_t i = 0; i < n; ++i)
-      if (unknown[i] >= 0) positions[i][c] += share * (first.positions[i][c] + u[unknown[i]] - positions[i][c]);
+      if (unknown[i] >= 0) positions[i][c] = first.positions[i][c] + u[unknown[i]];
   }
 }
 
@@ -192,10 +193,9 @@ template <Kernel K>
 
 }  // namespace detail
 
-/// Moves the particles of a plane or a meridian section that are not `held`: those on the surface along it towards the relative spacing of
-/// the first configuration, those inside to where smoothing of the displacement takes them (slide_along, relax_inside). Then the
-/// surface is moved along its normals by as much everywhere that the cells have the volume `volume` (m³; plane: m²) to round-off.
-/// `now` has its positions changed. Throws GeometryError where cells would be inverted, or the surface would have to move by more than a tenth
+/// Moves the particles of a plane or a meridian section that are not `held`: those on the surface along it, towards the relative spacing that they
+/// have in `first`; then all of the surface along its normals, by as much everywhere that the cells have the volume `volume_wanted` (m³; plane: m²) to
+/// round-off; then those inside to where a smooth displacement takes them (slide_along, relax_inside). Changes the positions of `now`. Throws GeometryError where cells would be inverted, or the surface would have to move by more than a tenth
 /// of a facet.
 [[nodiscard]] inline SurfaceTransfer redistribute(PointCloud<2>& now, const PointCloud<2>& first, const std::vector<char>& held, double volume_wanted,
                                                   const Redistribution& parameters) {
@@ -233,8 +233,7 @@ template <Kernel K>
   }
   if (!(std::abs(offset) < 0.1 * facet_size))
     throw GeometryError(fmt::format("The particles cannot be redistributed: the surface would have to move by {:.3g} m to enclose the volume of the points.", offset));
-  detail::relax_inside(first, fixed, 1.0, next.positions);
-  if (getenv("RDEBUG")) fmt::print(stderr, "offset {:.3g} m, facet {:.3g}\n", offset, facet_size);
+  detail::relax_inside(first, fixed, next.positions);
   for (const auto& cell : next.cells) {
     const Corners<2> corners = cell_corners(next, cell);
     for (const double s : {0.0, 1.0})

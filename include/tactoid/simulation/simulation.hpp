@@ -346,8 +346,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         throw ParameterError(fmt::format("Redistribution: {} number {} does not say what becomes of what it keeps of body \"{}\" when particles are moved.", what, n, body.name()));
       };
       std::apply([&](const auto&... between) {
-        std::size_t n = 0;
-        const auto look_at = [&](const auto& c) {
+        [[maybe_unused]] std::size_t n = 0;
+        [[maybe_unused]] const auto look_at = [&](const auto& c) {
           using Pair = std::decay_t<decltype(c)>;
           using Law = std::decay_t<decltype(c.contact)>;
           constexpr bool told = requires(Law& contact, const SurfaceTransfer& surface, const ParticleFields& fields) { contact.redistribute(surface, fields, fields); };
@@ -359,8 +359,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         (look_at(between), ...);
       }, contacts_);
       std::apply([&](const auto&... on) {
-        std::size_t n = 0;
-        const auto look_at = [&](const auto& t) {
+        [[maybe_unused]] std::size_t n = 0;
+        [[maybe_unused]] const auto look_at = [&](const auto& t) {
           using Term = std::decay_t<decltype(t.term)>;
           constexpr bool told = requires(Term& term, const SurfaceTransfer& surface, const ParticleFields& fields) { term.redistribute(surface, fields); };
           if (std::decay_t<decltype(t)>::body == b && !is_motion<decltype(t)> && !told && !follows_redistribution<Term>) refuse("boundary term", n);
@@ -431,14 +431,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
     if (done.updates == 0) return done;
     const double before = ledger_.total();
-    const EnergyLedger was = ledger_;
     std::array<Field, body_count> velocities;  // at the present instant, which the forces of the table before have told
     for (std::size_t b = 0; b < body_count; ++b) velocities[b] = fields_[b].velocity;
     const StepEnergies energies = forces(evaluated_, time_, 0.0);
     for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
     for (std::size_t b = 0; b < body_count; ++b) fields_[b].velocity = std::move(velocities[b]);
     take_stored(energies);
-    if (getenv("RDEBUG")) fmt::print(stderr, "t {:.4g} kin {:.3g} strain {:.3g} stab {:.3g} adh {:.3g} surf {:.3g} dist {:.3g}\n", time_, ledger_.kinetic - was.kinetic, ledger_.strain-was.strain, ledger_.stabilization-was.stabilization, ledger_.adhesion-was.adhesion, ledger_.surface-was.surface, done.distortion);
     done.lost_energy = before - ledger_.total();
     ledger_.reference_updates += done.lost_energy;
     return done;
