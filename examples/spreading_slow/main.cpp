@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     options.add("tolerance", &integrator.tolerance, Range::inside(0.0, 1.0), "Local error of a step over the size of a body");
     options.add_quantity("max-time-step", &longest, Quantity::time, Range::non_negative(), "Longest step; 0: none");
     options.add("update-at", &integrator.distortion, Range::non_negative(), "Stretch of a point since the last update at which a body gets a new reference; 0: never");
-    options.add("redistribute", &redistribution, Range::between(0.0, 1.0), "Share of the way to an even distribution that particles of the gel are moved with each update; 0: they stay with the matter");
+    options.add("redistribute", &redistribution, Range::between(0.0, 1.0), "Share of the way to their first spacing that particles on the surface of the gel slide with each update, those inside follow; 0: particles are matter");
     tethers.add_to(options);
     p.add_to(options);
     run.add_to(options);
@@ -76,6 +76,7 @@ int main(int argc, char** argv) {
     integrator.newton_tolerance = 1e-2 * integrator.tolerance;
     // E = 3 × the shear modulus 2 (C₁ + C₂): λ is large.
     const double factor = elasticity / (6.0 * (p.substrate_c1 + p.substrate_c2));
+    tethers.points = p.contact_points;
     run(SlowCase{{p, p.substrate_law(factor), tethers}, integrator}, options);
     return 0;
   });

@@ -20,6 +20,22 @@ ACTIVITIES = ["-1kPa", "-20Pa", "-1Pa"]
 CHECKS = {"stretch 1.25": [("update-at", "1.25"), ("resolution", resolution(1.0))], "never": [("update-at", "0"), ("resolution", resolution(1.0))],
           "finer": [("resolution", resolution(1.5))]}
 BONDS_ALONE = [[("resolution", resolution(r))] for r in (1.0, 1.5)]
+# Ten minutes: bonds of a fluid surface, particles redistributed.
+FLUID = [("bond-area", "mobile"), ("redistribute", "1")]
+ALONE = [("tethers", "off"), ("van-der-waals", "0")]
+MINUTES = {
+    "adhesion alone": [*ALONE, ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "adhesion alone, stretch 1.25": [*ALONE, ("update-at", "1.25"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "adhesion alone, finer": [*ALONE, ("end-time", "60s"), ("resolution", resolution(1.5))],
+    "10 kPa, tethers": [("end-time", "600s"), ("resolution", resolution(1.0))],
+    "100 kPa, tethers": [("elasticity", "100kPa"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "1 kPa, tethers": [("elasticity", "1kPa"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "10 kPa, tethers, stretch 1.25": [("update-at", "1.25"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "10 kPa, tethers, 4 points per facet": [("contact-points", "4"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "10 kPa, tethers, finer": [("end-time", "60s"), ("resolution", resolution(1.5))],
+}
+# Of a drop of 5 µm whose bonds have their range of 100 nm: gap below that range, by integration of the shape (see README.md).
+DROP_AREA = 21.6e-12
 # An angle of contact of arccos(W/σ − 1), 146 degrees with 12 µJ/m² and 72 µN/m, on a cell of 5 µm.
 YOUNG_AREA = 24.3e-12
 SWEEPS = [
@@ -31,6 +47,7 @@ SWEEPS = [
      [[("activity", a)] for a in ACTIVITIES]),
     ("check", "spreading_slow", [*SLOW, ("end-time", "60s")], list(CHECKS.values())),
     ("bonds", "spreading_slow", [*SLOW, ("end-time", "20s"), ("tethers", "off"), ("van-der-waals", "0")], BONDS_ALONE),
+    ("minutes", "spreading_slow", [*SLOW, *FLUID], list(MINUTES.values())),
     ("viscosity", "spreading_slow", [*COARSE, ("end-time", "120s"), ("fluid-hourglass-viscosity", "10Pa.s")], [[("viscosity", v)] for v in VISCOSITIES[1:]]),
 ]
 
@@ -94,7 +111,41 @@ def report(folder):
     rows.append(["Young's equation", "", "", number(YOUNG_AREA * UM**2, 4)])
     text += "**Adhesion alone** (no tethers, no van der Waals force): area, µm², against that of a drop with the contact angle of Young's equation:\n\n"
     text += table(["", "5 s", "10 s", "20 s"], rows)
-    return text, {"slow": draw(cases)}
+    cases.update({name: Case(folder / "minutes", options) for name, options in MINUTES.items()})
+    return text + "\n" + minutes(cases), {"slow": draw(cases), "minutes": draw_minutes(cases)}
+
+
+def minutes(cases):
+    """Ten minutes with redistributed particles: area at times, the range that it keeps from 60 s on, what updates took."""
+    rows = []
+    for name in MINUTES:
+        case = cases[name]
+        late = None if case.history is None else case.history["spread_area"][case.history["time"] >= 60.0] * UM**2
+        span = "–" if late is None or len(late) < 2 else f"{late.min():.3g} to {late.max():.3g}"
+        rows.append([name if case.completed else f"{name}: {early_end(case)}", *(number(case.at("spread_area", t) * UM**2, 4) for t in (5.0, 20.0, 60.0, 120.0, 300.0, 600.0)), span,
+                     number(case.summary.get("reference_updates", float("nan")), 5), number(case.summary.get("refused_updates", float("nan")), 5),
+                     number(case.summary.get("wall_seconds", float("nan")), 3)])
+    text = "![Area over ten minutes](spreading_slow/minutes.png)\n\n"
+    text += f"**Ten minutes**, with `--bond-area mobile --redistribute 1`: area, µm² (a drop whose bonds have their range: {DROP_AREA * UM**2:.1f}); its range after the first minute; updates, refused ones, seconds of the processor:\n\n"
+    return text + table(["", "5 s", "20 s", "1 min", "2 min", "5 min", "10 min", "after 1 min", "updates", "refused", "s"], rows)
+
+
+def draw_minutes(cases):
+    figure, axes = plt.subplots(1, 2, figsize=(9.2, 3.4), layout="constrained", dpi=85, sharey=True)
+    for k, name in enumerate(MINUTES):
+        history = cases[name].history
+        alone = name.startswith("adhesion")
+        if history is not None and len(history["time"]) > 1:
+            axes[0 if alone else 1].semilogx(history["time"][1:], history["spread_area"][1:] * UM**2, color=f"C{k if alone else k - 3}",
+                                            label=name.replace("adhesion alone, ", "").replace(", tethers", ""))
+    axes[0].axhline(DROP_AREA * UM**2, color="0.5", linewidth=0.8)
+    axes[0].text(3.0, DROP_AREA * UM**2 + 0.6, "drop, by theory", color="0.4", fontsize=8)
+    axes[0].set(title="adhesion alone", ylabel="spreading area (µm²)", ylim=(0.0, 45.0))
+    axes[1].set(title="with tethers")
+    for axis in axes:
+        axis.set(xlabel="time (s)", xlim=(1.0, 600.0))
+        axis.legend(fontsize=7, loc="lower right")
+    return figure
 
 
 def draw(cases):
