@@ -328,7 +328,7 @@ auto adhering(std::optional<Redistribution> redistribution, bool stochastic = fa
   auto body = cell();
   for (std::size_t i = 0; i < body.size(); ++i) {
     const Vector4& X = body.reference()[i];
-    body.displacement[i] = Vector4(0.15 * X[0], -0.22 * X[1] + 1.62 * um, 0.0, 0.0);
+    body.displacement[i] = Vector4((1.0 / std::sqrt(0.78) - 1.0) * X[0], -0.22 * X[1] + 1.62 * um, 0.0, 0.0);
   }
   Body block{"block", meridian(Disc{.radius = 6.0 * um, .height = 2.0 * um, .core_cells = 4, .rings = 4, .layers = 3}), Rkpm<2>{}, NodalCentroids{},
              Materials{Region{"body", NeoHookean{.mu = 1e4, .lambda = 1e5}}}};
@@ -400,8 +400,6 @@ TEST_CASE("A run with redistribution keeps momentum and volume, and goes on with
   run(whole, 0.2, 1);
   run(whole, 0.4, 1);
   REQUIRE(whole.integrator().reference.updates >= 3);
-  try { auto copy = whole.body<0>(); copy.update_reference(Redistribution{}, {}); } catch (const Error& e) { MESSAGE(std::string(e.what())); }
-  CHECK(whole.integrator().reference.refused == 0);
   auto part = adhering(Redistribution{});
   run(part, 0.2, 4);
   REQUIRE(part.integrator().reference.updates >= 1);
