@@ -364,11 +364,14 @@ TEST_CASE("Bonds are carried along: their number and what they store stay, and s
   a.position = x;
   double bonds = 0.0, stored = 0.0, capacity = 0.0;
   tethers.sites.visit([&](const auto& sites) { bonds = sum(sites.bound()), stored = sum(sites.stored()), capacity = sum(sites.capacity()); });
+  std::vector<double> carried_capacity;
+  tethers.sites.visit([&](const auto& sites) { carried_capacity = transfer.carry({0.5, 0.5}, {sites.capacity().begin(), sites.capacity().end()}); });
   tethers.redistribute(transfer, a, b);
   tethers.sites.visit([&](const auto& sites) {
     CHECK(sum(sites.bound()) == relative(bonds).epsilon(1e-13));
     CHECK(sum(sites.stored()) == relative(stored).epsilon(1e-13));
     CHECK(sum(sites.capacity()) == relative(capacity).epsilon(1e-13));
+    CHECK(std::vector<double>(sites.capacity().begin(), sites.capacity().end()) == carried_capacity);
   });
   // Nothing slid: nothing changes.
   const std::vector<double> weights = {0.5, 0.5};
