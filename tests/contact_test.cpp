@@ -323,6 +323,15 @@ TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positio
     b2.place({0, 0, 0}, 0.03 * um, seed + 20);
     LigandReceptor flat{};
     worst = std::max(worst, consistency<2>(flat, a2, b2, 300 * seed, 3e-7 * um));
+    // Of mobile bonds the area of A's facets counts too: in 3D, in a plane, around an axis.
+    LigandReceptor mobile{.area = ContactArea::mobile}, flat_mobile = mobile, round = mobile;
+    worst = std::max(worst, consistency<3>(mobile, a, b, 400 * seed, 3e-7 * um));
+    worst = std::max(worst, consistency<2>(flat_mobile, a2, b2, 500 * seed, 3e-7 * um));
+    TestBody<2> a3(meridian(Ball{.radius = um, .core_radius = 0.4 * um, .core_cells = 4, .shells = 2})),
+        b3(meridian(Disc{.radius = 2.0 * um, .height = 0.8 * um, .core_cells = 4, .rings = 3, .layers = 3}));
+    a3.place({0.0, 1.02 * um, 0.0}, 0.02 * um, seed);
+    b3.place({0.0, 0.0, 0.0}, 0.02 * um, seed + 30);
+    worst = std::max(worst, consistency<2>(round, a3, b3, 600 * seed, 3e-7 * um));
   }
   MESSAGE("largest relative error of the work: ", worst);
   CHECK(worst < 1e-6);
@@ -373,7 +382,7 @@ TEST_CASE("van der Waals: the force of eqn (12) above, and no flip below, a plan
 
 TEST_CASE("momentum and angular momentum of a pair are conserved to round-off") {
   for (const bool two_pass : {false, true})
-    for (const ContactArea area : {ContactArea::reference, ContactArea::current}) {
+    for (const ContactArea area : {ContactArea::reference, ContactArea::current, ContactArea::mobile}) {
       auto a = small_ball(3, 2), b = slab(7);
       a.place({0.1 * um, 0.07 * um, 0.99 * um}, 0.03 * um, 5, 0.3, Vector3(1, 0.3, 0.5));
       b.place({0, 0, 0}, 0.03 * um, 6);

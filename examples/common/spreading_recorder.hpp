@@ -172,6 +172,13 @@ class SpreadingRecorder {
       summary.set("factorizations", report.factorizations);
       summary.set("rejected_steps", report.rejected + report.failed);
     }
+    if constexpr (requires { simulation.integrator().reference; }) {
+      const auto& reference = simulation.integrator().reference;
+      summary.set("reference_updates", reference.updates);
+      summary.set("refused_updates", reference.refused);
+      summary.set("lost_energy", reference.lost_energy);
+      summary.set("largest_distortion", reference.largest_distortion);
+    }
     summary.set("threads", thread_count());
     summary.set("version", version);
     summary.set("completed", completed);

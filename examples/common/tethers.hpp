@@ -27,6 +27,7 @@ struct Tethers {
   double catch_force = 5.38e-12;       ///< F_c, N
   double rate_factor = 1e7;            ///< how much faster than in a cell bonds form and break here
   std::uint64_t seed = 1;              ///< of the stochastic ones
+  int points = 2;                      ///< along each side of a facet of the cell
 
   void add_to(Options& options) {
     options.add_choice("tethers", &mode, {"off", "mean", "stochastic"}, "Bonds that hold in the tangential direction: none, in the mean field, one by one");
@@ -56,7 +57,8 @@ struct Tethers {
                          .catch_rate = rate_factor * catch_rate,
                          .catch_force = catch_force},
             .stochastic = mode == "stochastic",
-            .seed = seed};
+            .seed = seed,
+            .points_per_direction = points};
   }
   [[nodiscard]] auto contacts() const { return std::tuple(between<0, 1>(law())); }
 

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
                           .end_time = 600.0};
     // Steps are as long as the shape allows: what they take out of fast motion shows in the balance of energy, and stops no run.
     SpreadingRun run{.out = "out/spreading_slow", .frames = 24, .samples = 240, .energy_limit = 1e9};
-    double elasticity = 10e3, longest = 0.0;
+    double elasticity = 10e3, longest = 0.0, redistribution = 0.0;
     // Bonds are as long as the gap at which adhesion holds the surfaces.
     Tethers tethers{.length = 100e-9, .capture_distance = 150e-9, .rate_factor = 1.0};
     UpdatedReference<ImpatientSteps> integrator{{}, 1.5, 1};
@@ -61,12 +61,14 @@ int main(int argc, char** argv) {
     options.add("tolerance", &integrator.tolerance, Range::inside(0.0, 1.0), "Local error of a step over the size of a body");
     options.add_quantity("max-time-step", &longest, Quantity::time, Range::non_negative(), "Longest step; 0: none");
     options.add("update-at", &integrator.distortion, Range::non_negative(), "Stretch of a point since the last update at which a body gets a new reference; 0: never");
+    options.add("redistribute", &redistribution, Range::between(0.0, 1.0), "Share of the way to their first spacing that particles on the surface of the gel slide with each update, those inside follow; 0: particles are matter");
     tethers.add_to(options);
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
     p.validate_axisymmetric();
     if (integrator.distortion == 0.0) integrator.distortion = std::numeric_limits<double>::infinity();
+    if (redistribution > 0.0) integrator.redistribution = Redistribution{.share = redistribution};
     integrator.time_step = p.time_step;
     if (longest > 0.0) integrator.max_time_step = longest;
     integrator.min_time_step = p.min_time_step > 0.0 ? p.min_time_step : std::min(1e-12, 1e-6 * p.end_time);
@@ -74,6 +76,7 @@ int main(int argc, char** argv) {
     integrator.newton_tolerance = 1e-2 * integrator.tolerance;
     // E = 3 × the shear modulus 2 (C₁ + C₂): λ is large.
     const double factor = elasticity / (6.0 * (p.substrate_c1 + p.substrate_c2));
+    tethers.points = p.contact_points;
     run(SlowCase{{p, p.substrate_law(factor), tethers}, integrator}, options);
     return 0;
   });

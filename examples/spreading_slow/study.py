@@ -20,6 +20,22 @@ ACTIVITIES = ["-1kPa", "-20Pa", "-1Pa"]
 CHECKS = {"stretch 1.25": [("update-at", "1.25"), ("resolution", resolution(1.0))], "never": [("update-at", "0"), ("resolution", resolution(1.0))],
           "finer": [("resolution", resolution(1.5))]}
 BONDS_ALONE = [[("resolution", resolution(r))] for r in (1.0, 1.5)]
+# Ten minutes: bonds of a fluid surface, particles redistributed.
+FLUID = [("bond-area", "mobile"), ("redistribute", "1")]
+ALONE = [("tethers", "off"), ("van-der-waals", "0")]
+MINUTES = {
+    "adhesion alone": [*ALONE, ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "adhesion alone, stretch 1.25": [*ALONE, ("update-at", "1.25"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "adhesion alone, finer": [*ALONE, ("end-time", "60s"), ("resolution", resolution(1.5))],
+    "10 kPa, tethers": [("end-time", "600s"), ("resolution", resolution(1.0))],
+    "100 kPa, tethers": [("elasticity", "100kPa"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "1 kPa, tethers": [("elasticity", "1kPa"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "10 kPa, tethers, stretch 1.25": [("update-at", "1.25"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "10 kPa, tethers, 4 points per facet": [("contact-points", "4"), ("end-time", "600s"), ("resolution", resolution(1.0))],
+    "10 kPa, tethers, finer": [("end-time", "60s"), ("resolution", resolution(1.5))],
+}
+# Area with a gap below the range of bonds, 100 nm, of a drop of 5 µm on a rigid plane: drop_area(100e-9).
+DROP_AREA = 21.7e-12
 # An angle of contact of arccos(W/σ − 1), 146 degrees with 12 µJ/m² and 72 µN/m, on a cell of 5 µm.
 YOUNG_AREA = 24.3e-12
 SWEEPS = [
@@ -31,8 +47,59 @@ SWEEPS = [
      [[("activity", a)] for a in ACTIVITIES]),
     ("check", "spreading_slow", [*SLOW, ("end-time", "60s")], list(CHECKS.values())),
     ("bonds", "spreading_slow", [*SLOW, ("end-time", "20s"), ("tethers", "off"), ("van-der-waals", "0")], BONDS_ALONE),
+    ("minutes", "spreading_slow", [*SLOW, *FLUID], list(MINUTES.values())),
     ("viscosity", "spreading_slow", [*COARSE, ("end-time", "120s"), ("fluid-hourglass-viscosity", "10Pa.s")], [[("viscosity", v)] for v in VISCOSITIES[1:]]),
 ]
+
+
+def drop_area(reach, tension=72e-6, work=12e-6, radius=5e-6):
+    """Area, m², with a gap below `reach` of a drop that bonds of this range hold on a rigid plane. Its shape has
+    γ(z) (dψ/ds + sin ψ/r) − γ'(z) cos ψ = p, γ = σ₀ + Φ(z), and above the bonds is a sphere: r σ₀ sin ψ = p r²/2. Inside the contact the
+    gap leaves that of the pressure like a Bessel function, from which the integration starts at a radius r₀."""
+    def energy(z):
+        return work * ((reach / z) ** 4 - 2.0 * (reach / z) ** 2)
+
+    def slope(z):
+        return 4.0 * work / reach * ((reach / z) ** 3 - (reach / z) ** 5)
+
+    def shape(p, r):
+        low, high = 0.5 * reach, reach  # the gap at which bonds carry the pressure
+        for _ in range(80):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if -slope(middle) > p else (low, middle)
+        curvature = (slope(high * (1 + 1e-5)) - slope(high * (1 - 1e-5))) / (2e-5 * high)
+        length = np.sqrt((tension + energy(high)) / curvature)
+        y = np.array([r, high + 1e-4 * reach, 1e-4 * reach / length * (1.0 - 0.5 * length / r), 0.0])  # r, z, ψ, volume
+        edge = None
+
+        def rate(y):
+            r, z, psi, _ = y
+            s, c = np.sin(psi), np.cos(psi)
+            return np.array([c, s, (p + slope(z) * c) / (tension + energy(z)) - s / r, np.pi * r * r * s])
+
+        while y[1] < 20.0 * reach and y[2] < np.pi:
+            h = reach / 40.0 if y[1] < 3.0 * reach else reach / 8.0
+            a = rate(y)
+            b = rate(y + 0.5 * h * a)
+            c = rate(y + 0.5 * h * b)
+            y = y + h / 6.0 * (a + 2.0 * b + 2.0 * c + rate(y + h * c))
+            if edge is None and y[1] > reach:
+                edge = y[0]
+        excess = y[0] * tension * np.sin(y[2]) - 0.5 * p * y[0] ** 2
+        sphere = 2.0 * tension / p
+        height = sphere * (1.0 + np.cos(y[2]))
+        return excess, edge, y[3] + np.pi * height**2 * (sphere - height / 3.0)
+
+    pressure = 2.0 * tension / radius
+    for _ in range(4):
+        low, high = 0.2 * radius, 0.8 * radius  # of r₀: more contact pulls more
+        sign = shape(pressure, low)[0] > 0.0
+        for _ in range(24):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if (shape(pressure, middle)[0] > 0.0) == sign else (low, middle)
+        _, edge, volume = shape(pressure, low)
+        pressure *= (volume / (4.0 / 3.0 * np.pi * radius**3)) ** (1.0 / 3.0)
+    return np.pi * edge**2
 
 
 def exponent(case, first, last):
@@ -94,7 +161,41 @@ def report(folder):
     rows.append(["Young's equation", "", "", number(YOUNG_AREA * UM**2, 4)])
     text += "**Adhesion alone** (no tethers, no van der Waals force): area, µm², against that of a drop with the contact angle of Young's equation:\n\n"
     text += table(["", "5 s", "10 s", "20 s"], rows)
-    return text, {"slow": draw(cases)}
+    cases.update({name: Case(folder / "minutes", options) for name, options in MINUTES.items()})
+    return text + "\n" + minutes(cases), {"slow": draw(cases), "minutes": draw_minutes(cases)}
+
+
+def minutes(cases):
+    """Ten minutes with redistributed particles: area at times, the range that it keeps from 60 s on, what updates took."""
+    rows = []
+    for name in MINUTES:
+        case = cases[name]
+        late = None if case.history is None else case.history["spread_area"][case.history["time"] >= 60.0] * UM**2
+        span = "–" if late is None or len(late) < 2 else f"{late.min():.3g} to {late.max():.3g}"
+        rows.append([name if case.completed else f"{name}: {early_end(case)}", *(number(case.at("spread_area", t) * UM**2, 4) for t in (5.0, 20.0, 60.0, 120.0, 300.0, 600.0)), span,
+                     number(case.summary.get("reference_updates", float("nan")), 5), number(case.summary.get("refused_updates", float("nan")), 5),
+                     number(case.summary.get("wall_seconds", float("nan")), 3)])
+    text = "![Area over ten minutes](spreading_slow/minutes.png)\n\n"
+    text += f"**Ten minutes**, with `--bond-area mobile --redistribute 1`: area, µm² (a drop whose bonds have their range: {DROP_AREA * UM**2:.1f}); its range after the first minute; updates, refused ones, seconds of the processor:\n\n"
+    return text + table(["", "5 s", "20 s", "1 min", "2 min", "5 min", "10 min", "after 1 min", "updates", "refused", "s"], rows)
+
+
+def draw_minutes(cases):
+    figure, axes = plt.subplots(1, 2, figsize=(9.2, 3.4), layout="constrained", dpi=85, sharey=True)
+    for k, name in enumerate(MINUTES):
+        history = cases[name].history
+        alone = name.startswith("adhesion")
+        if history is not None and len(history["time"]) > 1:
+            axes[0 if alone else 1].semilogx(history["time"][1:], history["spread_area"][1:] * UM**2, color=f"C{k if alone else k - 3}",
+                                            label=name.replace("adhesion alone, ", "").replace(", tethers", ""))
+    axes[0].axhline(DROP_AREA * UM**2, color="0.5", linewidth=0.8)
+    axes[0].text(1.05, DROP_AREA * UM**2 + 0.6, "drop, by theory", color="0.4", fontsize=8)
+    axes[0].set(title="adhesion alone", ylabel="spreading area (µm²)", ylim=(0.0, 45.0))
+    axes[1].set(title="with tethers")
+    for axis in axes:
+        axis.set(xlabel="time (s)", xlim=(1.0, 600.0))
+        axis.legend(fontsize=7, loc="lower right")
+    return figure
 
 
 def draw(cases):

@@ -19,6 +19,7 @@ namespace tactoid {
 /// a constant acceleration has none there.
 template <class Acceleration = Vector3>
 struct BodyForce {
+  static constexpr bool follows_redistribution = true;  ///< keeps nothing of the body
   /// The acceleration is a vector, not a function.
   static constexpr bool constant = std::convertible_to<Acceleration, Vector3>;
   static_assert(

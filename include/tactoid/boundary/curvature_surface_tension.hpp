@@ -18,6 +18,7 @@ namespace tactoid {
 /// SurfaceTension; what the forces do beyond it is reported as external power, so that a balance closes.
 /// A BoundaryTerm in 2 and 3 dimensions.
 struct CurvatureSurfaceTension {
+  static constexpr bool follows_redistribution = true;  ///< keeps nothing of the body
   static constexpr Reads reads = Reads::facets;  ///< the surface
   double tension = 0.072e-3;                 ///< σ₀, N/m
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()

@@ -19,6 +19,7 @@ namespace tactoid {
 /// move a cell in discretisation error. A BoundaryTerm in 2 (per thickness, or of the rings of a meridian) and
 /// 3 dimensions.
 struct AmbientPressure {
+  static constexpr bool follows_redistribution = true;  ///< keeps nothing of the body
   static constexpr Reads reads = Reads::facets;  ///< the surface
   double pressure = 0.0;                     ///< p, gauge, Pa; positive compresses
   PerDimension<SurfaceIntegral> integral{};  ///< set by initialize()

@@ -8,6 +8,7 @@
 
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
@@ -55,9 +56,12 @@ struct SurfaceIntegral {
     return sum;
   }
 
-  /// For checkpoints: the values per facet, for who reads them before the next step.
+  /// For checkpoints: the values per facet, for who reads them before the next step, and δ, which redistribution changes.
   template <class Archive>
-  void state(Archive& archive) { archive("value", value); }
+  void state(Archive& archive) {
+    archive("value", value);
+    archive("smallest", smallest);
+  }
 };
 
 namespace detail {
@@ -183,6 +187,14 @@ struct SurfaceTension {
     auto& s = integral.emplace<D>();
     s.initialize(cloud, body);
     if (smoothing > 0.0) s.smooth(smoothing, body.reference);
+  }
+
+  /// Facets have new sizes now, of which `smoothing` is a share.
+  void redistribute(const SurfaceTransfer&, const ParticleFields& body) {
+    integral.visit([&](auto& s) {
+      s.smallest.clear();
+      if (smoothing > 0.0) s.smooth(smoothing, body.position);
+    });
   }
 
   /// Adds −σ₀ ∂A/∂x_I and returns σ₀ A.

@@ -13,6 +13,7 @@
 #include <tactoid/contact/rigid_surface.hpp>
 #include <tactoid/contact/surface.hpp>
 #include <tactoid/contact/surface_contact.hpp>
+#include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/contact/tethered_bonds.hpp>
 #include <tactoid/contact/tracking.hpp>
 #include <tactoid/contact/van_der_waals.hpp>

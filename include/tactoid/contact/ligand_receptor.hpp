@@ -91,7 +91,7 @@ struct LigandReceptor {
   double range = 100e-9;                      ///< ε, gap of lowest energy, m
   double floor = 0.3;                         ///< gap below which the traction is linear, × ε, in (0, 1)
   double cutoff = 20.0;                       ///< gap beyond which there is no force, × ε, > √(5/3)
-  ContactArea area = ContactArea::reference;  ///< bonds per reference or per current area of A
+  ContactArea area = ContactArea::reference;  ///< bonds per reference or per current area of A, or mobile
   bool two_pass = false;                      ///< both bodies' facets are sampled, with half the weight each
   int points_per_direction = 2;               ///< Gauss points along each side of a facet, 1 to 4
   SurfaceContactEngine engine{};              ///< set by initialize()
@@ -110,6 +110,12 @@ struct LigandReceptor {
   }
   /// See SurfaceContactEngine.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) { return engine.apply(law(), a, b, area); }
+  /// Bonds are carried along with the surface, also where particles slide along it: their number stays.
+  void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&) { engine.redistribute(surface); }
+  /// Throws ParameterError for two passes.
+  void require_redistributable() const {
+    if (two_pass) throw ParameterError("Redistribution: LigandReceptor.two_pass keeps particles where they are.");
+  }
   /// Bound of ω² at the present gaps, 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
     return engine.stiffness_rate(law(), a, b);

@@ -10,6 +10,7 @@
 #include <tactoid/contact/repulsive_wall.hpp>
 #include <tactoid/contact/rigid_surface.hpp>
 #include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 
@@ -87,9 +88,15 @@ class RigidPass {
     }
   }
 
-  /// For checkpoints: the time of the last call.
+  /// Particles slid along the surface: the reference area of each point is that of the matter that is there now.
+  void redistribute(const SurfaceTransfer& surface) { quadrature_.area = surface.carry(quadrature_.weights(), quadrature_.area); }
+
+  /// For checkpoints: the time of the last call, and the areas, which redistribution changes.
   template <class Archive>
-  void state(Archive& archive) { archive("last_time", last_time_); }
+  void state(Archive& archive) {
+    archive("last_time", last_time_);
+    archive("area", quadrature_.area);
+  }
 
  private:
   struct State {
@@ -134,6 +141,10 @@ struct OnRigid {
         throw ParameterError("OnRigid.surface of an axisymmetric body must be a surface of revolution about its axis, which is (0, 1, 0).");
     }
     pass.emplace<D>().initialize(cloud, body, points_per_direction);
+  }
+  /// See RigidPass.
+  void redistribute(const SurfaceTransfer& transfer, const ParticleFields&) {
+    pass.visit([&](auto& p) { p.redistribute(transfer); });
   }
   /// Adds A_q t(g) n; returns Σ A_q Φ and the power of a moving surface.
   TermEnergy apply(const ParticleFields& body, double time) {
@@ -192,6 +203,7 @@ struct RigidPlate {
     contact.initialize(cloud, body);
   }
   TermEnergy apply(const ParticleFields& body, double time) { return contact.apply(body, time); }  ///< see OnRigid
+  void redistribute(const SurfaceTransfer& surface, const ParticleFields& body) { contact.redistribute(surface, body); }  ///< see OnRigid
   /// See OnRigid.
   [[nodiscard]] double stiffness_rate(const ParticleFields& body) const { return contact.stiffness_rate(body); }
   /// See OnRigid.

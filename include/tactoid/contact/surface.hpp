@@ -238,6 +238,12 @@ struct FacetQuadrature {
             points[q].weight * surface.tangents(f, points[q].local, reference).area_vector().norm();
   }
 
+  /// The weights of the points of a facet.
+  [[nodiscard]] std::vector<double> weights() const {
+    std::vector<double> list;
+    for (const FacetPoint& point : points) list.push_back(point.weight);
+    return list;
+  }
   [[nodiscard]] std::size_t size() const { return area.size(); }  ///< number of points on all facets
   /// Facet of point q.
   [[nodiscard]] Index facet_of(std::size_t q) const { return static_cast<Index>(q / points.size()); }

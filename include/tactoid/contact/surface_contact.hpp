@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <tactoid/contact/gap_law.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/contact/tracking.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
@@ -18,8 +20,11 @@ namespace tactoid {
 /// The area that a traction acts on.
 enum class ContactArea {
   reference,  ///< per reference area: the force is exactly the gradient of the energy Σ A_q Φ(gap_q)
-  current     ///< per current area (Nanson): a traction, not a gradient; the energy Σ a_q Φ changes also with
+  current,    ///< per current area (Nanson): a traction, not a gradient; the energy Σ a_q Φ changes also with
               ///< the area a_q, and that power, Σ ȧ_q Φ, is reported as external power
+  mobile      ///< per current area, of which there are as many bonds everywhere: a fluid surface, in which receptors drift. The force is
+              ///< exactly the gradient of the energy Σ a_q Φ(gap_q): beside the traction it lowers the tension of A's surface by −Φ where it adheres,
+              ///< which Young's equation needs
 };
 
 /// One side of a contact: the quadrature points on the facets of one body (the slave) against the facets of the
@@ -53,11 +58,24 @@ class ContactPass {
     parallel_for(points_.size(), [&](std::size_t q) {
       State& s = states_[q];
       const double gap = closest[q].gap;
-      s = {};
+      s.force = s.energy = s.area_power = 0.0;
       if (gap >= law.reach()) return;
       const double density = law.potential(gap);
       double a = quadrature_.area[q];
-      if (area == ContactArea::current) {
+      if (area == ContactArea::mobile) {
+        const auto& p = quadrature_.point(q);
+        const Index f = quadrature_.facet_of(q);
+        const FacetTangents x = slave_.tangents(f, p.local, slave.position);
+        const Vector3 c = x.area_vector(), m = c.normalized();
+        a = p.weight * c.norm();
+        const Vector3 by_s = x.t.cross(m), by_t = m.cross(x.s);
+        const auto ns = FacetSurface<D>::shape_s(p.local), nt = FacetSurface<D>::shape_t(p.local);
+        const auto ring = slave_.circumference_slopes(p.local);
+        for (std::size_t k = 0; k < ns.size(); ++k) {
+          s.along[k] = (-factor * density * p.weight) * (ns[k] * by_s + nt[k] * by_t);
+          s.along[k][0] -= factor * density * p.weight * ring[k] * by_t[2];
+        }
+      } else if (area == ContactArea::current) {
         const auto& p = quadrature_.point(q);
         const FacetTangents x = slave_.tangents(quadrature_.facet_of(q), p.local, slave.position);
         const FacetTangents v = slave_.tangent_rates(quadrature_.facet_of(q), p.local, slave.velocity);
@@ -73,6 +91,10 @@ class ContactPass {
       const State& s = states_[q];
       total.potential += s.energy;
       total.external_power += s.area_power;
+      if (area == ContactArea::mobile && closest[q].gap < law.reach()) {
+        const auto& nodes = slave_.facets[quadrature_.facet_of(q)];
+        for (std::size_t k = 0; k < nodes.size(); ++k) slave.force[nodes[k]].template head<3>() += s.along[k];
+      }
       if (s.force == 0.0) continue;
       const Vector4 force = pad(Vector3(s.force * closest[q].normal));
       const auto& from = slave_.facets[quadrature_.facet_of(q)];
@@ -129,13 +151,20 @@ class ContactPass {
   [[nodiscard]] const FacetSurface<D>& master() const { return master_; }             ///< on which they look for closest points
   [[nodiscard]] const FacetQuadrature<D>& quadrature() const { return quadrature_; }  ///< of the slave's facets
 
-  /// For checkpoints: the closest points that are followed.
+  /// The slave's particles slid along its surface: the reference area of each point is that of the matter that is there now.
+  void redistribute(const SurfaceTransfer& surface) { quadrature_.area = surface.carry(quadrature_.weights(), quadrature_.area); }
+
+  /// For checkpoints: the closest points that are followed, and the areas, which redistribution changes.
   template <class Archive>
-  void state(Archive& archive) { archive.part("tracker", tracker_); }
+  void state(Archive& archive) {
+    archive.part("tracker", tracker_);
+    archive("area", quadrature_.area);
+  }
 
  private:
   struct State {
     double force = 0.0, energy = 0.0, area_power = 0.0;
+    std::array<Vector3, FacetSurface<D>::corners> along{};  // on the nodes, of the tension that adhesion takes away (ContactArea::mobile)
   };
   void locate(const ParticleFields& slave) {
     parallel_for(points_.size(), [&](std::size_t q) {
@@ -170,6 +199,12 @@ class SurfaceContactEngine {
     TermEnergy total = forth_.visit([&](auto& pass) { return pass.apply(law, a, b, area, factor); });
     if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.apply(law, b, a, area, factor); });
     return total;
+  }
+
+  /// A's particles slid along its surface; see ContactPass.
+  void redistribute(const SurfaceTransfer& surface) {
+    if (!back_.empty()) throw ParameterError("Redistribution: a contact in two passes keeps its particles.");
+    forth_.visit([&](auto& pass) { pass.redistribute(surface); });
   }
 
   /// Gershgorin's bound of ω² at the gaps of the last call of apply, 1/s².

@@ -9,6 +9,7 @@
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/contact/tracking.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
@@ -74,6 +75,9 @@ class TetherSites {
   /// Where a site was at the last call, m.
   [[nodiscard]] const Vector4& place(std::size_t site) const { return points_[point_of_[site]]; }
 
+  /// Receptors and bonds are carried along with A's surface, along which its particles slid; see TetheredBonds::redistribute.
+  void redistribute(const TetheredBonds& law, const SurfaceTransfer& surface, const ParticleFields& a, const ParticleFields& b);
+
   /// What a checkpoint keeps.
   template <class Archive>
   void state(Archive& archive) {
@@ -81,6 +85,7 @@ class TetherSites {
     std::vector<Place> place(anchor_.size());
     for (std::size_t s = 0; s < place.size(); ++s) place[s] = Eigen::Map<const Place>(anchor_[s].data());
     archive.part("tracker", tracker_);
+    archive("capacity", capacity_);  // redistribution changes it
     archive("bound", bound_);
     archive("stored", stored_);
     archive("potential", potential_);
@@ -174,6 +179,15 @@ struct TetheredBonds {
   /// Forces of the bonds at the present positions, after the kinetics of the time since the last call.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time) {
     return sites.visit([&](auto& s) { return s.apply(*this, a, b, time); });
+  }
+  /// A's particles slid along its surface. The receptors and the bonds of each part of it go to the sites that cover it now: their numbers, and
+  /// what bonds store, stay. The bonds that meet in a site have the mean of their extensions, and are anchored where that leads.
+  void redistribute(const SurfaceTransfer& surface, const ParticleFields& a, const ParticleFields& b) {
+    sites.visit([&](auto& s) { s.redistribute(*this, surface, a, b); });
+  }
+  /// Throws ParameterError for stochastic bonds: each is at its place of a facet.
+  void require_redistributable() const {
+    if (stochastic) throw ParameterError("Redistribution: stochastic TetheredBonds keep their places on the facets; use the mean field.");
   }
   /// Bound of ω², 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
@@ -309,6 +323,36 @@ TermEnergy TetherSites<D>::apply(const TetheredBonds& law, const ParticleFields&
     }
   }
   return total;
+}
+
+template <int D>
+void TetherSites<D>::redistribute(const TetheredBonds& law, const SurfaceTransfer& surface, const ParticleFields& a, const ParticleFields& b) {
+  const std::vector<double> weights = quadrature_.weights();
+  std::vector<double> bound(size(), 0.0);
+  Field extension(size(), Vector4::Zero());
+  std::vector<double> most(size(), 0.0);
+  std::vector<Index> from_site(size(), 0);
+  surface.for_each_share(weights, [&](std::size_t to, std::size_t from, double share) {
+    const double n = share * bound_[from];
+    bound[to] += n;
+    extension[to] += n * extension_[from];
+    if (n > most[to]) most[to] = n, from_site[to] = static_cast<Index>(from);
+  });
+  quadrature_.area = surface.carry(weights, quadrature_.area);
+  capacity_ = surface.carry(weights, capacity_);
+  stored_ = surface.carry(weights, stored_);
+  locate(a, b, law.capture_distance);
+  const std::vector<Index> facet = anchor_facet_;
+  for (std::size_t s = 0; s < size(); ++s) {
+    bound_[s] = bound[s];
+    if (!(bound[s] > 0.0)) continue;
+    const Vector4& at = points_[point_of_[s]];
+    const ClosestPoint<D> place = ClosestPointTracker<D>::walk(master_, facet[from_site[s]], b.position, Vector3((at - extension[s] / bound[s]).template head<3>()));
+    anchor_facet_[s] = place.facet;
+    anchor_[s] = place.local;
+    potential_[s] = law.potential((at - master_.interpolate(place.facet, place.local, b.position)).norm());
+  }
+  shown_ = stored_;
 }
 
 template <int D>

@@ -47,6 +47,7 @@ struct ParticlesOnSurface {
 /// external power. With `reaction` B's surface carries the opposite, and the energy −m G d₀ e^{−g/d₀} (going on as
 /// −m G (d₀ − gap) for gap < 0) is stored. A Contact in 2 and 3 dimensions.
 struct VanDerWaals {
+  static constexpr bool follows_redistribution = true;  ///< keeps nothing of A
   static constexpr Reads reads_a = Reads::all;     ///< every particle of A
   static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
   double strength = 1e6;                         ///< G, force per mass at contact, N/kg

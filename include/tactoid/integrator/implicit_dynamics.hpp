@@ -230,6 +230,21 @@ struct ImplicitDynamics {
     }
   }
 
+  /// Goes on after particles were redistributed, between two steps: what is kept of the step before is carried to where they are now by
+  /// `rows` (ReferenceUpdate::rows).
+  template <class System>
+  void carry_over(System& system, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& rows) {
+    auto&& problem = system.implicit_problem();
+    Eigen::VectorXd change = past.z - past.z_before, z, ignored;
+    problem.carry(rows, change);
+    problem.carry(rows, past.rate);
+    problem.carry(rows, past.rate_before);
+    problem.take_velocities(past.rate);
+    problem.state(z, ignored);
+    past.z = z;
+    past.z_before = z - change;
+  }
+
   /// What the steps took.
   [[nodiscard]] const ImplicitReport& report() const { return past.report; }
 

@@ -6,6 +6,7 @@
 #include <tactoid/simulation/implicit_problem.hpp>
 #include <tactoid/simulation/observer.hpp>
 #include <tactoid/simulation/placement.hpp>
+#include <tactoid/simulation/redistribution.hpp>
 #include <tactoid/simulation/simulation.hpp>
 #include <tactoid/simulation/static_problem.hpp>
 #include <tactoid/simulation/stiffness.hpp>

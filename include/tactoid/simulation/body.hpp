@@ -27,6 +27,7 @@
 #include <tactoid/quadrature/particle_values.hpp>
 #include <tactoid/simulation/decomposition.hpp>
 #include <tactoid/simulation/earlier_configuration.hpp>
+#include <tactoid/simulation/redistribution.hpp>
 #include <tactoid/simulation/region_laws.hpp>
 #include <tactoid/simulation/row_operations.hpp>
 
@@ -210,38 +211,86 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// before until they are evaluated again. Throws GeometryError or ComputationError where the quadrature cannot sample the present
   /// configuration, and ParameterError for a periodic cloud and where several processes share the body; it is then as it was.
   void update_reference() {
-    require_whole();
-    static_assert(requires(const QuadratureType& q, const std::vector<NodalCell<dimension>>& cells) { { q.build_moved(cloud_, kernel_, cells) } -> std::same_as<PointTable>; },
-                  "The reference of a body can be updated if its quadrature has build_moved(cloud, kernel, cells), as NodalCentroids.");
-    const Field u = displacement_in_table();
-    EarlierConfiguration earlier{reference(), earlier_.volume, {}};
-    if (earlier.volume.empty()) earlier.volume = table_.volume;
-    PointCloud<dimension> cloud = cloud_;
-    for (std::size_t i = 0; i < u.size(); ++i) cloud.positions[i] = (table_.particle_position[i] + u[i]).template head<dimension>();
-    std::vector<NodalCell<dimension>> cells(table_.points());
-    for (std::size_t q = 0; q < cells.size(); ++q) {
-      const Index owner = table_.owner[q];
-      const Tensor3 F = Tensor3::Identity() + rows::gradient_at(table_, q, u);
-      const Vector3 offset = table_.position[q] - table_.particle_position[owner].template head<3>();
-      cells[q] = {owner, table_.region[q], 0.0, cloud.positions[owner] + (F * offset).template head<dimension>()};
-      if (table_.axisymmetric) cells[q].centroid[0] = table_.position[q][0] * F(2, 2);  // the stretch of the ring
-      if (!(determinant(F) > 0.0))
-        throw GeometryError(fmt::format("Body \"{}\": the reference cannot be updated, the point of particle {} is inverted.", name_, owner));
-      earlier.gradient.push_back(F * earlier_gradient(q));
-    }
-    for_each_region([&](const auto& region, Index) {
-      double stiffest = 0.0;
-      for (const auto& law : region.laws) stiffest = std::max(stiffest, shear_modulus(law));
-      if (stiffest == 0.0) smooth_volume_ratio(table_, region.begin, region.end, earlier);
-    });
-    for (std::size_t q = 0; q < cells.size(); ++q) {
-      cells[q].volume = earlier.volume[q] * determinant(earlier.gradient[q]);
-      if (!(cells[q].volume > 0.0))
-        throw GeometryError(fmt::format("Body \"{}\": the reference cannot be updated, the volume ratio around particle {} jumps too much.", name_, table_.owner[q]));
-    }
-    PointTable table = quadrature_.build_moved(cloud, kernel_, cells);
-    earlier_ = std::move(earlier);
+    MovedReference moved = moved_reference();
+    PointTable table = quadrature_.build_moved(moved.cloud, kernel_, moved.cells);
+    earlier_ = std::move(moved.earlier);
     adopt(std::move(table));
+  }
+
+  /// The same with particles that are moved (redistribute in redistribution.hpp): all but those of solids (regions whose laws have a shear modulus)
+  /// and those with a value in `held`, one per particle. What is kept, and how:
+  ///   - the surface to second order in the facets, and the volume that it encloses: exactly that of the points, to which it is brought;
+  ///   - the mass of each region to round-off: the cells of a fluid are the nodal cells of the particles, and its volume ratio is carried
+  ///     along (carrying_rows), so that V_q is the volume of the cell over J. Lumped masses are made anew from it;
+  ///   - linear momentum, in a plane angular momentum too, to round-off: velocities and directors are carried along, affine fields
+  ///     exactly, and what momentum lacks is given to the particles that are not held as a rigid motion;
+  ///   - solids, as they are. Of a fluid's F₀ the volume ratio alone is kept, all that it has.
+  /// A particle is then a label: its place is exact, `displacement` is from the first place of the label, not of the matter that is there.
+  /// Throws as update_reference() does, GeometryError where a cell would be inverted, and ParameterError as require_redistributable().
+  RedistributedParticles update_reference(const Redistribution& parameters, const std::vector<char>& held)
+    requires(dimension == 2)
+  {
+    require_redistributable();
+    MovedReference moved = moved_reference();
+    RedistributedParticles result;
+    std::vector<char> stays = held;
+    stays.resize(size(), 0);
+    std::vector<char> solid(table_.points(), 1);
+    for_each_region([&](const auto& region, Index) {
+      if (is_fluid(region)) std::fill(solid.begin() + static_cast<std::ptrdiff_t>(region.begin), solid.begin() + static_cast<std::ptrdiff_t>(region.end), 0);
+    });
+    PointCloud<dimension> first = cloud_;
+    for (std::size_t i = 0; i < size(); ++i) first.positions[i] = reference()[i].template head<dimension>();
+    // The cells of solids are no polygons of their particles: what they lack is none of the fluid's.
+    double wanted = 0.0;
+    for (std::size_t q = 0; q < solid.size(); ++q) {
+      if (solid[q]) stays[table_.owner[q]] = 1;
+      else wanted += moved.cells[q].volume;
+    }
+    const std::vector<NodalCell<dimension>> present = cells_of_points(moved.cloud);
+    for (std::size_t q = 0; q < solid.size(); ++q)
+      if (solid[q]) wanted += present[q].volume;
+    PointCloud<dimension> cloud = moved.cloud;
+    result.surface = redistribute(cloud, first, stays, wanted, parameters);
+    result.rows = detail::carrying_rows(kernel_, moved.cloud, cloud.positions);
+    redistribute_points(moved, cloud);
+
+    PointTable table = quadrature_.build_moved(cloud, kernel_, moved.cells);
+    const std::vector<double> masses = masses_;
+    Field position(size());
+    for (std::size_t i = 0; i < size(); ++i) position[i] = pad(moved.cloud.positions[i]);
+    earlier_ = std::move(moved.earlier);
+    redistributed_ = true;
+    adopt(std::move(table));
+    for (std::size_t i = 0; i < size(); ++i) displacement[i] = pad(cloud.positions[i]) - reference()[i];
+    Field carried = detail::carried(result.rows, velocity);
+    for (std::size_t i = 0; i < size(); ++i)
+      if (cloud_.axisymmetric && cloud.positions[i][0] == 0.0) carried[i][0] = 0.0;
+    keep_momentum(masses, position, carried, held);
+    velocity = std::move(carried);
+    if constexpr (has_director) director = detail::carried(result.rows, director);
+    return result;
+  }
+
+  /// Throws ParameterError where particles cannot be redistributed: in one and three dimensions, under fluids (laws without a shear modulus) that are
+  /// graded or have a history, and where the quadrature has not one point per particle and region.
+  void require_redistributable() const {
+    if (dimension != 2) throw ParameterError(fmt::format("Redistribution: the particles of body \"{}\" cannot be moved in {} dimensions, only in a plane or a meridian section.", name_, dimension));
+    for_each_region([&](const auto& region, Index r) {
+      using Region = std::decay_t<decltype(region)>;
+      if (!is_fluid(region)) return;
+      if (Region::graded) throw ParameterError(fmt::format("Redistribution: the law of region {} of body \"{}\" belongs to places of the first configuration (Graded), its particles cannot be moved.", r, name_));
+      if (history_size<typename Region::Law> > 0) throw ParameterError(fmt::format("Redistribution: the law of region {} of body \"{}\" has a history, its particles cannot be moved.", r, name_));
+    });
+    for (std::size_t q = 1; q < table_.points(); ++q)
+      if (table_.owner[q] == table_.owner[q - 1] && table_.region[q] == table_.region[q - 1])
+        throw ParameterError("Redistribution: body \"" + name_ + "\" needs a quadrature with one point per particle and region, such as NodalCentroids.");
+  }
+  /// Whether a region of the body is a fluid: without one its particles are not moved.
+  [[nodiscard]] bool has_fluid() const {
+    bool fluid = false;
+    for_each_region([&](const auto& region, Index) { fluid = fluid || is_fluid(region); });
+    return fluid;
   }
 
   // --- forces ------------------------------------------------------------------------------------------------
@@ -431,6 +480,123 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     for (Index q = 0; q < table_.points(); ++q) longest_row_ = std::max(longest_row_, table_.row(q).size());
   }
 
+  /// The present configuration as a new reference: particles, points with their volumes, and what is kept of the first one.
+  struct MovedReference {
+    PointCloud<dimension> cloud;
+    std::vector<NodalCell<dimension>> cells;
+    EarlierConfiguration earlier;
+  };
+  [[nodiscard]] MovedReference moved_reference() const {
+    require_whole();
+    static_assert(requires(const QuadratureType& q, const std::vector<NodalCell<dimension>>& cells) { { q.build_moved(cloud_, kernel_, cells) } -> std::same_as<PointTable>; },
+                  "The reference of a body can be updated if its quadrature has build_moved(cloud, kernel, cells), as NodalCentroids.");
+    const Field u = displacement_in_table();
+    MovedReference moved{cloud_, {}, {reference(), earlier_.volume, {}}};
+    auto& [cloud, cells, earlier] = moved;
+    if (earlier.volume.empty()) earlier.volume = table_.volume;
+    for (std::size_t i = 0; i < u.size(); ++i) cloud.positions[i] = (table_.particle_position[i] + u[i]).template head<dimension>();
+    cells.resize(table_.points());
+    for (std::size_t q = 0; q < cells.size(); ++q) {
+      const Index owner = table_.owner[q];
+      const Tensor3 F = Tensor3::Identity() + rows::gradient_at(table_, q, u);
+      const Vector3 offset = table_.position[q] - table_.particle_position[owner].template head<3>();
+      cells[q] = {owner, table_.region[q], 0.0, cloud.positions[owner] + (F * offset).template head<dimension>()};
+      if (table_.axisymmetric) cells[q].centroid[0] = table_.position[q][0] * F(2, 2);  // the stretch of the ring
+      if (!(determinant(F) > 0.0))
+        throw GeometryError(fmt::format("Body \"{}\": the reference cannot be updated, the point of particle {} is inverted.", name_, owner));
+      earlier.gradient.push_back(F * earlier_gradient(q));
+    }
+    for_each_region([&](const auto& region, Index) {
+      if (is_fluid(region)) smooth_volume_ratio(table_, region.begin, region.end, earlier);
+    });
+    for (std::size_t q = 0; q < cells.size(); ++q) {
+      cells[q].volume = earlier.volume[q] * determinant(earlier.gradient[q]);
+      if (!(cells[q].volume > 0.0))
+        throw GeometryError(fmt::format("Body \"{}\": the reference cannot be updated, the volume ratio around particle {} jumps too much.", name_, table_.owner[q]));
+    }
+    return moved;
+  }
+
+  template <class Region>
+  [[nodiscard]] static bool is_fluid(const Region& region) {
+    return std::all_of(region.laws.begin(), region.laws.end(), [](const auto& law) { return shear_modulus(law) == 0.0; });
+  }
+
+  /// Nodal cells in the order of the points.
+  [[nodiscard]] static std::vector<NodalCell<dimension>> cells_of_points(const PointCloud<dimension>& cloud) {
+    std::vector<NodalCell<dimension>> cells = nodal_cells(cloud);
+    std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return std::pair(a.region, a.particle) < std::pair(b.region, b.particle); });
+    return cells;
+  }
+
+  /// Gives the points of fluids the nodal cells of the moved particles, their volume ratio as it was there, and the volume of the
+  /// first configuration that belongs to both.
+  void redistribute_points(MovedReference& moved, const PointCloud<dimension>& cloud) const {
+    const std::vector<NodalCell<dimension>> fresh = cells_of_points(cloud);
+    for_each_region([&](const auto& region, Index) {
+      if (!is_fluid(region)) return;
+      PointCloud<dimension> centroids;
+      std::vector<Point<dimension>> places;
+      const std::size_t n = region.end - region.begin;
+      Eigen::VectorXd ratio(static_cast<Eigen::Index>(n));
+      double before = 0.0, after = 0.0;
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t q = region.begin + k;
+        centroids.positions.push_back(moved.cells[q].centroid);
+        places.push_back(fresh[q].centroid);
+        ratio[static_cast<Eigen::Index>(k)] = determinant(moved.earlier.gradient[q]);
+        before += moved.earlier.volume[q];
+      }
+      ratio = (detail::carrying_rows(kernel_, centroids, places) * ratio).eval();
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t q = region.begin + k;
+        const double J = ratio[static_cast<Eigen::Index>(k)];
+        if (!(J > 0.0) || !(fresh[q].volume > 0.0))
+          throw GeometryError(fmt::format("Body \"{}\": the particles cannot be redistributed, the volume ratio around particle {} jumps too much.", name_, table_.owner[q]));
+        moved.cells[q].centroid = fresh[q].centroid;
+        moved.cells[q].volume = fresh[q].volume;
+        after += moved.earlier.volume[q] = fresh[q].volume / J;
+      }
+      for (std::size_t q = region.begin; q < region.end; ++q) {
+        moved.earlier.volume[q] *= before / after;
+        moved.earlier.gradient[q] = std::cbrt(fresh[q].volume / moved.earlier.volume[q]) * Tensor3::Identity();
+      }
+    });
+  }
+
+  /// Adds the rigid motion of the particles that are not held to velocities that were carried along, with which momentum is what it was.
+  void keep_momentum(const std::vector<double>& masses, const Field& positions, Field& carried, const std::vector<char>& held) const {
+    const bool turns = !cloud_.axisymmetric;
+    Vector3 lacking = Vector3::Zero();
+    Tensor3 moments = Tensor3::Zero();
+    Vector4 middle = Vector4::Zero();
+    double length = 0.0;
+    for (const Vector4& x : positions) middle += x / static_cast<double>(positions.size());
+    for (const Vector4& x : positions) length = std::max(length, (x - middle).norm());
+    // Velocities of the two translations, and of a turn by 1/length.
+    const auto modes = [&](const Vector4& x) {
+      Eigen::Matrix<double, 2, 3> m;
+      const Vector4 r = (x - middle) / length;
+      m << 1.0, 0.0, -r[1], 0.0, 1.0, r[0];
+      return m;
+    };
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Eigen::Matrix<double, 2, 3> now = modes(reference()[i] + displacement[i]);
+      lacking += masses[i] * modes(positions[i]).transpose() * velocity[i].template head<2>() - masses_[i] * now.transpose() * carried[i].template head<2>();
+      if (held.empty() || !held[i]) moments += masses_[i] * now.transpose() * now;
+    }
+    if (!turns) {  // along the axis alone
+      if (moments(1, 1) > 0.0)
+        for (std::size_t i = 0; i < size(); ++i)
+          if (held.empty() || !held[i]) carried[i][1] += lacking[1] / moments(1, 1);
+      return;
+    }
+    if (!(moments(0, 0) > 0.0)) return;
+    const Vector3 rigid = moments.ldlt().solve(lacking);
+    for (std::size_t i = 0; i < size(); ++i)
+      if (held.empty() || !held[i]) carried[i].template head<2>() += modes(reference()[i] + displacement[i]) * rigid;
+  }
+
   void require_whole() const {
     if (share_) throw ParameterError("Body \"" + name_ + "\": several processes share it, and so it keeps its reference.");
   }
@@ -439,6 +605,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   void adopt(PointTable table) {
     table_ = std::move(table);
     for_each_region([&](const auto& region, Index) { region.scale_stabilization(quadrature_, table_.stabilization_scale); });
+    if (redistributed_) assemble_masses();
     follow_table();
   }
 
@@ -456,6 +623,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     archive("updated_volumes", volumes);
     archive("earlier_volumes", earlier.volume);
     archive("earlier_gradients", earlier.gradient);
+    archive("redistributed", redistributed_);
     if constexpr (Archive::restoring && requires(const std::vector<NodalCell<dimension>>& cells) { quadrature_.build_moved(cloud_, kernel_, cells); }) {
       if (particles.empty() && !earlier_.empty())
         throw ParameterError("Body \"" + name_ + "\": a state before an update of the reference cannot be restored after it; compose the simulation anew.");
@@ -526,8 +694,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     };
     for_each_region([&](auto& region, Index) {
       for (std::size_t q = region.begin; q < region.end; ++q) {
-        share(masses_, table_.value_based() ? table_.mass_shares : table_.point_values, q, table_.volume[q] * region.law(q).density);
-        share(volumes_, table_.point_values, q, table_.volume[q]);
+        share(masses_, table_.value_based() ? table_.mass_shares : table_.point_values, q, point_volume(q) * region.law(q).density);
+        share(volumes_, table_.point_values, q, point_volume(q));
       }
     });
     for (std::size_t i = 0; i < masses_.size(); ++i)
@@ -785,6 +953,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::vector<double> masses_, volumes_;
   std::vector<double> point_scale_;  // wave_numbers()
   EarlierConfiguration earlier_;
+  bool redistributed_ = false;  // particles have moved against the matter: masses are those of the table
   std::vector<rows::Motion> motion_;  // displacement (since the table) and velocity, packed for the force loop
   Field relative_;                    // displacement since the table, where the reference was updated
   std::size_t longest_row_ = 0;

@@ -21,6 +21,12 @@ struct BodyFields {
     position = reference;
     velocity.assign(body.size(), Vector4::Zero());
     force.assign(body.size(), Vector4::Zero());
+    follow_masses(body);
+  }
+
+  /// Takes masses and volumes of the body anew: those of particles that were redistributed change.
+  template <class Body>
+  void follow_masses(const Body& body) {
     mass = body.masses();
     volume = body.nodal_volumes();
   }

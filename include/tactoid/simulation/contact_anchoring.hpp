@@ -9,8 +9,10 @@ namespace tactoid {
 
 /// Strong anchoring of the director on the contact surface, h = h̄: a particle of A's surface whose gap to B falls
 /// to the capture distance for the first time keeps the director that it has then. Placed among the contacts,
-/// `between<0, 1>(ContactAnchoring{})`; it exerts no force. Zeng and Li, Soft Matter 2012, 8, 5765, below eqn (10).
+/// `between<0, 1>(ContactAnchoring{})`; it exerts no force. Where particles are redistributed, a particle that is held stays so, with
+/// the director of its new place. Zeng and Li, Soft Matter 2012, 8, 5765, below eqn (10).
 struct ContactAnchoring {
+  static constexpr bool follows_redistribution = true;  ///< who is held remains so
   static constexpr Reads reads_a = Reads::facets;  ///< the surface of A
   static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
   double capture_distance = 100e-9;  ///< m, > 0

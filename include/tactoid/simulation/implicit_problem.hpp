@@ -72,6 +72,34 @@ class SimulationProblem {
     });
   }
 
+  /// Carries a vector of unknowns to particles that were redistributed, by rows of values at the particles (one matrix per body, empty where they
+  /// stayed). What is held stays as it is.
+  void carry(const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& rows, Eigen::VectorXd& x) const {
+    const Eigen::VectorXd before = x;
+    simulation_.for_each_body([&](const auto& body, std::size_t b) {
+      const auto& W = rows[b];
+      for (Eigen::Index i = 0; i < W.rows(); ++i) {
+        const auto carry_at = [&](auto components, const auto& place_of) {
+          constexpr int n = decltype(components)::value;
+          Eigen::Matrix<double, n, 1> sum = Eigen::Matrix<double, n, 1>::Zero();
+          for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(W, i); it; ++it)
+            sum += it.value() * before.segment<n>(place_of(static_cast<std::size_t>(it.col())));
+          const Eigen::Index at = place_of(static_cast<std::size_t>(i));
+          for (int c = 0; c < n; ++c)
+            if (!held_[static_cast<std::size_t>(at + c)]) x[at + c] = sum[c];
+        };
+        carry_at(std::integral_constant<int, dimension>{}, [&](std::size_t k) { return place(b, k); });
+        if constexpr (has_director<decltype(body)>) carry_at(std::integral_constant<int, 3>{}, [&](std::size_t k) { return director_place(b, k); });
+      }
+    });
+  }
+  /// Puts the velocities of the bodies into a vector of rates.
+  void take_velocities(Eigen::VectorXd& rate) const {
+    simulation_.for_each_body([&](const auto& body, std::size_t b) {
+      for (std::size_t i = 0; i < body.size(); ++i) rate.segment<dimension>(place(b, i)) = body.velocity[i].template head<dimension>();
+    });
+  }
+
   /// Diagonal of the box around the body for displacements, m; 1 for directors.
   [[nodiscard]] Eigen::VectorXd scale() const {
     Eigen::VectorXd scale = Eigen::VectorXd::Ones(size_);

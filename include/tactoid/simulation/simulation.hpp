@@ -241,6 +241,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       const std::string name = "body_" + std::to_string(b);
       archive.part(name, body);
+      if constexpr (Archive::restoring) fields_[b].follow_masses(body);
       archive.part(name + "/at_particles", fields_[b]);
       archive.part(name + "/conditions", essential_[b]);
       archive.part(name + "/stable_step", stable_[b]);
@@ -325,33 +326,24 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Updates the reference of every body that is distorted by more than `distortion` (Body::distortion) and evaluates the forces anew.
   /// Nothing moves, and time stands still. Bodies need a quadrature with build_moved, such as NodalCentroids; see require_updatable().
   ReferenceUpdate update_references(double distortion) {
-    ReferenceUpdate done;
-    for_each_body([&](auto& body, std::size_t b) {
-      const double present = body.distortion();
-      done.distortion = std::max(done.distortion, present);
-      if (!(present > distortion)) return;
-      try {
+    return update_references(distortion, [](auto& body, std::size_t) { body.update_reference(); });
+  }
+  /// The same, and particles of fluids are redistributed: then contacts and terms are told (SurfaceTransfer), and `rows` is filled.
+  ReferenceUpdate update_references(double distortion, const Redistribution& redistribution) {
+    std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> rows(body_count);
+    std::array<SurfaceTransfer, body_count> surfaces;
+    ReferenceUpdate done = update_references(distortion, [&](auto& body, std::size_t b) {
+      if constexpr (dimension == 2) {
+        if (!body.has_fluid()) return body.update_reference();
+        RedistributedParticles moved = body.update_reference(redistribution, held_particles(body, b));
+        rows[b] = std::move(moved.rows);
+        surfaces[b] = std::move(moved.surface);
+        follow_redistribution(body, b, rows[b], surfaces[b]);
+      } else {
         body.update_reference();
-      } catch (const GeometryError& error) {
-        done.refused = error.what();
-        return;
-      } catch (const ComputationError& error) {
-        done.refused = error.what();
-        return;
       }
-      stable_[b].calibrate(body);
-      ++done.updates;
     });
-    if (done.updates == 0) return done;
-    const double before = ledger_.total();
-    std::array<Field, body_count> velocities;  // at the present instant, which the forces of the table before have told
-    for (std::size_t b = 0; b < body_count; ++b) velocities[b] = fields_[b].velocity;
-    const StepEnergies energies = forces(evaluated_, time_, 0.0);
-    for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
-    for (std::size_t b = 0; b < body_count; ++b) fields_[b].velocity = std::move(velocities[b]);
-    take_stored(energies);
-    done.lost_energy = before - ledger_.total();
-    ledger_.reference_updates += done.lost_energy;
+    if (std::any_of(rows.begin(), rows.end(), [](const auto& r) { return r.rows() > 0; })) done.rows = std::move(rows);
     return done;
   }
 
@@ -361,6 +353,44 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       throw ParameterError("UpdatedReference: bodies that several processes share keep their reference; run it on one, or without.");
     for_each_body([](const auto& body, std::size_t) {
       if (!body.cloud().period.isZero()) throw ParameterError("UpdatedReference: body \"" + body.name() + "\" is periodic, and keeps its reference.");
+    });
+  }
+
+  /// Throws ParameterError where particles of fluids cannot be redistributed: by their body (Body::require_redistributable), or by a contact or
+  /// a term on it that does not say what becomes of what it keeps (surface_transfer.hpp).
+  void require_redistributable() const {
+    for_each_body([&](const auto& body, std::size_t b) {
+      if (!body.has_fluid()) {
+        if (dimension != 2) body.require_redistributable();
+        return;
+      }
+      body.require_redistributable();
+      const auto refuse = [&](const char* what, std::size_t n) {
+        throw ParameterError(fmt::format("Redistribution: {} number {} does not say what becomes of what it keeps of body \"{}\" when particles are moved.", what, n, body.name()));
+      };
+      std::apply([&](const auto&... between) {
+        [[maybe_unused]] std::size_t n = 0;
+        [[maybe_unused]] const auto look_at = [&](const auto& c) {
+          using Pair = std::decay_t<decltype(c)>;
+          using Law = std::decay_t<decltype(c.contact)>;
+          constexpr bool told = requires(Law& contact, const SurfaceTransfer& surface, const ParticleFields& fields) { contact.redistribute(surface, fields, fields); };
+          if (Pair::first == b && !told && !follows_redistribution<Law>) refuse("contact", n);
+          if (Pair::second == b && !follows_redistribution<Law>) refuse("contact", n);
+          if constexpr (requires { c.contact.require_redistributable(); }) c.contact.require_redistributable();
+          ++n;
+        };
+        (look_at(between), ...);
+      }, contacts_);
+      std::apply([&](const auto&... on) {
+        [[maybe_unused]] std::size_t n = 0;
+        [[maybe_unused]] const auto look_at = [&](const auto& t) {
+          using Term = std::decay_t<decltype(t.term)>;
+          constexpr bool told = requires(Term& term, const SurfaceTransfer& surface, const ParticleFields& fields) { term.redistribute(surface, fields); };
+          if (std::decay_t<decltype(t)>::body == b && !is_motion<decltype(t)> && !told && !follows_redistribution<Term>) refuse("boundary term", n);
+          ++n;
+        };
+        (look_at(on), ...);
+      }, boundaries_);
     });
   }
 
@@ -402,6 +432,67 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
 
  private:
+  /// Updates the references of bodies that are distorted by update(body, number), and evaluates the forces anew.
+  template <class Update>
+  ReferenceUpdate update_references(double distortion, const Update& update) {
+    ReferenceUpdate done;
+    for_each_body([&](auto& body, std::size_t b) {
+      const double present = body.distortion();
+      done.distortion = std::max(done.distortion, present);
+      if (!(present > distortion)) return;
+      try {
+        update(body, b);
+      } catch (const GeometryError& error) {
+        done.refused = error.what();
+        return;
+      } catch (const ComputationError& error) {
+        done.refused = error.what();
+        return;
+      }
+      stable_[b].calibrate(body);
+      ++done.updates;
+    });
+    if (done.updates == 0) return done;
+    const double before = ledger_.total();
+    std::array<Field, body_count> velocities;  // at the present instant, which the forces of the table before have told
+    for (std::size_t b = 0; b < body_count; ++b) velocities[b] = fields_[b].velocity;
+    const StepEnergies energies = forces(evaluated_, time_, 0.0);
+    for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
+    for (std::size_t b = 0; b < body_count; ++b) fields_[b].velocity = std::move(velocities[b]);
+    take_stored(energies);
+    done.lost_energy = before - ledger_.total();
+    ledger_.reference_updates += done.lost_energy;
+    return done;
+  }
+
+  /// Particles with prescribed motion, other than that nothing leaves the axis.
+  template <class Body>
+  [[nodiscard]] std::vector<char> held_particles(const Body& body, std::size_t b) const {
+    std::vector<char> held(body.size(), 0);
+    for (int c = 0; c < 3; ++c)
+      for (const auto& condition : essential_[b].conditions(c))
+        if (c > 0 || !body.cloud().on_axis(body.cloud().positions[condition.particle])) held[condition.particle] = 1;
+    return held;
+  }
+
+  /// Tells everything about the particles of a body where they are now.
+  template <class Body>
+  void follow_redistribution(const Body& body, std::size_t b, const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows, const SurfaceTransfer& surface) {
+    const Field velocity = detail::carried(rows, fields_[b].velocity);  // at the present instant
+    fields_[b].follow_masses(body);
+    fields_[b].refresh(body, 0.0);
+    fields_[b].velocity = velocity;
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      if constexpr (requires { between.contact.redistribute(surface, fields_[b].view(), fields_[b].view()); })
+        if (Pair::first == b) between.contact.redistribute(surface, fields_[b].view(), fields_[Pair::second].view());
+    });
+    for_each_boundary([&](auto& on, std::size_t) {
+      if constexpr (requires { on.term.redistribute(surface, fields_[b].view()); })
+        if (std::decay_t<decltype(on)>::body == b) on.term.redistribute(surface, fields_[b].view());
+    });
+  }
+
   /// What a step books in the ledger.
   struct StepEnergies {
     BodyTotals internal;
