@@ -4,6 +4,10 @@
 
 #include <tactoid/integrator/sparse_solvers.hpp>
 
+#if defined(TACTOID_TEST_OF_SUITESPARSE) != defined(TACTOID_WITH_SUITESPARSE)
+#error "The solvers of SuiteSparse are tested by the target that links tactoid::suitesparse."
+#endif
+
 namespace integrator_solvers_test {
 
 using namespace tactoid;

@@ -344,6 +344,26 @@ TEST_CASE("A clamped body in steps of its own: reactions do not jump, and what i
   CHECK(own.error() < 1e-2);
 }
 
+TEST_CASE("A run that is continued has the same bits where a body with steps of its own is held, too") {
+  const auto compose = [] {
+    auto soft = block("soft", counted<0>(1.5e3), 0.12 * um, 0.0);
+    const auto top = select(soft.cloud(), [](const Point<2>& X) { return X[1] > 2.11 * um; });
+    const auto shaken = [](const Vector3&, double t) { return Vector3(0.05 * um * std::sin(2e6 * t), -0.02 * t, 0.0); };
+    return Simulation{Bodies{std::move(soft), block("stiff", counted<1>(1.5e3 * 256.0), -2.0 * um, 0.0, 0.0, 6.0)}, Contacts{between<0, 1>(LigandReceptor{})},
+                      Boundaries{on<0>(PrescribedMotion{top, shaken, {true, true, false}})}, subcycled_steps(0.5, 8)};
+  };
+  const double end = 2e-6;
+  auto whole = compose();
+  whole.run(0.5 * end);
+  CHECK(whole.integrator().report.body_steps[0] * 2 < whole.integrator().report.steps);
+  auto resumed = compose();
+  restore_state(resumed, save_state(whole));
+  resumed.run(0.5 * end);  // the run that was saved ends; both begin another one
+  whole.run(end);
+  resumed.run(end);
+  check_same(save_state(whole), save_state(resumed));
+}
+
 TEST_CASE("A run that is continued from a checkpoint, on other threads, has the same bits") {
   const auto compose = [] { return cell_on_substrate(subcycled_steps(0.8, 8)); };
   const double end = 0.4e-6;

@@ -32,7 +32,6 @@ using tactoid::test::relative;
 namespace {
 
 constexpr double um = 1e-6;
-constexpr double pi = std::numbers::pi;
 
 /// A nucleus in a gel, in its meridian section.
 auto cell(int core_cells = 8, int shells = 4) {
@@ -470,6 +469,10 @@ TEST_CASE("Redistributions that cannot be are refused in one sentence, when the 
     return Simulation{Bodies{cell(), cell()}, Contacts{between<0, 1>(Silent{})}, Boundaries{}, UpdatedReference{CentralDifference{}, 2.0, 10, Redistribution{}}};
   };
   CHECK_THROWS_WITH_AS(with_silent(), doctest::Contains("contact number 0"), ParameterError);
+  const auto own_steps = [] {
+    return Simulation{Bodies{cell()}, Contacts{}, Boundaries{}, UpdatedReference{SubcycledCentralDifference{CentralDifference{}, 8}, 2.0, 10, Redistribution{}}};
+  };
+  CHECK_THROWS_WITH_AS(own_steps(), doctest::Contains("take steps of their own"), ParameterError);
   // A cell that is inside out stays as it is.
   auto body = drop();
   for (std::size_t i = 0; i < body.size(); ++i) body.displacement[i] = Vector4(-2.0 * body.reference()[i][0], 0.0, 0.0, 0.0);
@@ -477,6 +480,5 @@ TEST_CASE("Redistributions that cannot be are refused in one sentence, when the 
   CHECK_THROWS_WITH_AS(body.update_reference(Redistribution{}, {}), doctest::Contains("would be inverted"), GeometryError);
   CHECK(body.displacement == u);
 }
-
 
 }  // namespace simulation_redistribution_test

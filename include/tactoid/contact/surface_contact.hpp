@@ -83,6 +83,7 @@ class ContactPass {
         a = p.weight * normal.norm();
         s.area_power = factor * p.weight * density * normal.normalized().dot(v.s.cross(x.t) + x.s.cross(v.t));
       }
+      s.area = a;
       s.force = factor * a * law.traction(gap);
       s.energy = factor * a * density;
     });
@@ -118,7 +119,7 @@ class ContactPass {
     for (std::size_t q = 0; q < points_.size(); ++q) {
       const double gap = closest[q].gap;
       if (!(gap < law.reach())) continue;
-      const double k = 2.0 * factor * quadrature_.area[q] * law.stiffness(gap);
+      const double k = 2.0 * factor * states_[q].area * law.stiffness(gap);
       const auto& from = slave_.facets[quadrature_.facet_of(q)];
       const auto& onto = master_.facets[closest[q].facet];
       const auto& n = quadrature_.point(q).shape;
@@ -139,7 +140,7 @@ class ContactPass {
       const double gap = closest[q].gap;
       if (!(gap < law.reach())) continue;
       const double near = 1e-6 * std::abs(gap);
-      const double k = std::copysign(factor * quadrature_.area[q] * law.stiffness(gap), law.traction(gap - near) - law.traction(gap + near));
+      const double k = std::copysign(factor * states_[q].area * law.stiffness(gap), law.traction(gap - near) - law.traction(gap + near));
       detail::emit_spring(slave_.facets[quadrature_.facet_of(q)], quadrature_.point(q).shape, master_.facets[closest[q].facet],
                           FacetSurface<D>::shape(closest[q].local), Tensor3(k * closest[q].normal * closest[q].normal.transpose()), emit);
     }
@@ -163,7 +164,7 @@ class ContactPass {
 
  private:
   struct State {
-    double force = 0.0, energy = 0.0, area_power = 0.0;
+    double area = 0.0, force = 0.0, energy = 0.0, area_power = 0.0;
     std::array<Vector3, FacetSurface<D>::corners> along{};  // on the nodes, of the tension that adhesion takes away (ContactArea::mobile)
   };
   void locate(const ParticleFields& slave) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -25,7 +24,7 @@ struct FacetCurve {
   for (Index seed = 0; seed < surface.facets.size(); ++seed) {
     if (taken[seed]) continue;
     Index first = seed;
-    FacetCurve curve;            ///< of facets and nodes
+    FacetCurve curve;
     for (Index f = surface.side_neighbors[seed][0]; f != no_facet && f != seed; f = surface.side_neighbors[f][0]) first = f;
     curve.closed = surface.side_neighbors[first][0] != no_facet;  // went around, up to the neighbour of the seed
     if (curve.closed) first = seed;
@@ -46,7 +45,7 @@ class SurfaceTransfer {
  public:
   /// A curve with the new place of each of its nodes: k + s is s of the way along its k-th facet as this was. Ends stay.
   struct Slide {
-    FacetCurve curve;            ///< of facets and nodes
+    FacetCurve curve;            ///< with its facets in their order
     std::vector<double> places;  ///< one per node, ascending, from 0 to the number of facets
     std::vector<double> radii;   ///< of the nodes as they were, m; 1 where there is no axis
     std::vector<double> lengths;  ///< of the facets as they were, m

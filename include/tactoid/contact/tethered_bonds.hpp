@@ -345,6 +345,7 @@ void TetherSites<D>::redistribute(const TetheredBonds& law, const SurfaceTransfe
   const std::vector<Index> facet = anchor_facet_;
   for (std::size_t s = 0; s < size(); ++s) {
     bound_[s] = bound[s];
+    extension_[s] = force_[s] = Vector4::Zero();
     if (!(bound[s] > 0.0)) continue;
     const Vector4& at = points_[point_of_[s]];
     const ClosestPoint<D> place = ClosestPointTracker<D>::walk(master_, facet[from_site[s]], b.position, Vector3((at - extension[s] / bound[s]).template head<3>()));

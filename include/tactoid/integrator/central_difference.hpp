@@ -65,6 +65,7 @@ struct CentralDifference {
     return dt;
   }
 
+  /// Kick, drift and evaluate: a step of dt, s.
   template <class System>
   static void advance(System& system, double dt) {
     system.kick(0.5 * (system.last_time_step() + dt));

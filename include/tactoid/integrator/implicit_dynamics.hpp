@@ -235,11 +235,13 @@ struct ImplicitDynamics {
   template <class System>
   void carry_over(System& system, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& rows) {
     auto&& problem = system.implicit_problem();
-    Eigen::VectorXd change = past.z - past.z_before, z, ignored;
+    // Changes are carried, so that the corrections of momentum are in both instants.
+    Eigen::VectorXd change = past.z - past.z_before, rate_change = past.rate - past.rate_before, z, ignored;
     problem.carry(rows, change);
     problem.carry(rows, past.rate);
-    problem.carry(rows, past.rate_before);
+    problem.carry(rows, rate_change);
     problem.take_velocities(past.rate);
+    past.rate_before = past.rate - rate_change;
     problem.state(z, ignored);
     past.z = z;
     past.z_before = z - change;

@@ -67,7 +67,8 @@ struct ReferenceUpdate {
 ///
 /// With a Redistribution, `UpdatedReference{ImplicitDynamics{}, 1.5, 10, Redistribution{}}`, particles of fluids are moved in each update.
 ///
-/// The system offers `ReferenceUpdate update_references(double distortion)`, and `require_updatable()`, which throws ParameterError. A body that cannot be sampled anew keeps its reference, and
+/// The system offers `ReferenceUpdate update_references(double distortion)`, and `require_updatable()`, which throws ParameterError; with a Redistribution also
+/// `update_references(double distortion, const Redistribution&)` and `require_redistributable()`. A body that cannot be sampled anew keeps its reference, and
 /// is asked again when it is distorted a tenth more.
 template <class Inner>
 struct UpdatedReference : Inner {

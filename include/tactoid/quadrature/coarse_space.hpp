@@ -44,7 +44,7 @@ class CoarseSpace {
         nodes_ *= static_cast<std::size_t>(count_[k]);
       }
       width *= 1.1;
-    } while (nodes_ > max_nodes && cells_ != std::array<int, 3>{1, 1, 1});
+    } while (nodes_ > max_nodes && cells_[0] * cells_[1] * cells_[2] > 1);
   }
 
   [[nodiscard]] std::size_t size() const { return nodes_; }  ///< number of splines
@@ -70,7 +70,7 @@ class CoarseSpace {
 
   /// The splines that do not vanish at a place: 3 in every direction.
   struct Splines {
-    std::array<int, 3> first = {0, 0, 0};  ///< number of the first one in each direction
+    int first[3] = {0, 0, 0};  ///< number of the first one in each direction
     double value[3][3] = {{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
   };
   [[nodiscard]] Splines at(const Vector3& X) const {
@@ -103,9 +103,9 @@ class CoarseSpace {
 
   int dimension_;
   Vector3 origin_ = Vector3::Zero();
-  std::array<double, 3> length_ = {1.0, 1.0, 1.0};
-  std::array<int, 3> cells_ = {1, 1, 1}, count_ = {1, 1, 1};
-  std::array<bool, 3> periodic_ = {};
+  double length_[3] = {1.0, 1.0, 1.0};
+  int cells_[3] = {1, 1, 1}, count_[3] = {1, 1, 1};
+  bool periodic_[3] = {false, false, false};
   std::size_t nodes_ = 0;
 };
 
@@ -120,6 +120,8 @@ class CoarseCorrection {
     factorize(assemble(S));
     affine_ = space_.affine(scale_);
   }
+
+  [[nodiscard]] bool usable() const { return solver_.info() == Eigen::Success; }  ///< E could be factorised
 
   /// z ← z + P E⁻¹ Pᵀ r, all three components.
   void add(const Field& r, Field& z) {

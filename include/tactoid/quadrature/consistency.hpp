@@ -219,6 +219,7 @@ inline ConsistencyReport make_consistent(PointTable& table, std::span<const doub
   floor = 1e-30 * floor * floor * static_cast<double>(n);
   std::optional<detail::CoarseCorrection> coarse;
   if (n >= detail::particles_for_coarse_space) coarse.emplace(table, S);
+  if (coarse && !coarse->usable()) coarse.reset();
   const Field first_residual = coarse ? residual : Field();
   auto precondition = [&] {
     for (std::size_t i = 0; i < n; ++i) {
@@ -233,9 +234,9 @@ inline ConsistencyReport make_consistent(PointTable& table, std::span<const doub
   ConsistencyReport report;
   double least = initial.sum();
   int last_progress = 0;  // the iteration in which the residual had halved again
-  auto active = [&](int k) { return norm[k] > tolerance * tolerance * initial[k] && norm[k] > floor; };
+  auto active = [&](int k) { return !(norm[k] <= tolerance * tolerance * initial[k] || norm[k] <= floor); };
   while (active(0) || active(1) || active(2)) {
-    if (report.iterations == max_iterations)
+    if (report.iterations == max_iterations || !norm.allFinite())
       throw ComputationError(fmt::format(
           "The integration-consistent correction of the gradients did not converge: residual {:.1e} after {} iterations; "
           "the likely cause is a cloud whose facets do not close its cells.",

@@ -155,7 +155,7 @@ struct PointTable {
       double lost[3] = {};
       for (std::size_t e = offsets[q]; e < offsets[q + 1]; ++e) {
         const TableEntry& exact = entries[e];
-        if (e + 1 == offsets[q + 1] && exact.gradient[0] == 0.0 && exact.gradient[1] == 0.0 && exact.gradient[2] == 0.0) break;  // padding
+        if (e > offsets[q] && e + 1 == offsets[q + 1] && exact.particle == entries[offsets[q]].particle && exact.gradient[0] == 0.0 && exact.gradient[1] == 0.0 && exact.gradient[2] == 0.0) break;  // padding
         const TableEntry stored = add(exact.gradient, exact.particle, value_based() ? 0.0 : point_values[e]);
         for (int k = 0; k < 3; ++k) lost[k] += exact.gradient[k] - stored.gradient[k];
       }

@@ -259,9 +259,15 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     const std::vector<double> masses = masses_;
     Field position(size());
     for (std::size_t i = 0; i < size(); ++i) position[i] = pad(moved.cloud.positions[i]);
-    earlier_ = std::move(moved.earlier);
-    redistributed_ = true;
-    adopt(std::move(table));
+    EarlierConfiguration earlier = std::exchange(earlier_, std::move(moved.earlier));
+    const bool before = std::exchange(redistributed_, true);
+    try {
+      adopt(std::move(table));
+    } catch (const GeometryError&) {
+      earlier_ = std::move(earlier);
+      redistributed_ = before;
+      throw;
+    }
     for (std::size_t i = 0; i < size(); ++i) displacement[i] = pad(cloud.positions[i]) - reference()[i];
     Field carried = detail::carried(result.rows, velocity);
     for (std::size_t i = 0; i < size(); ++i)
@@ -440,6 +446,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     archive.expect("points", table_.points());
     restore_reference(archive);
     archive.expect("pairs", table_.pairs());
+    archive.expect("bytes_per_pair", sizeof(Entry));
     archive("displacement", displacement);
     archive("velocity", velocity);
     archive("force", force);
@@ -601,11 +608,21 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     if (share_) throw ParameterError("Body \"" + name_ + "\": several processes share it, and so it keeps its reference.");
   }
 
-  /// Goes on with a table of the same points on another reference.
+  /// Goes on with a table of the same points on another reference; where its masses are not positive, with the one before.
   void adopt(PointTable table) {
-    table_ = std::move(table);
+    PointTable before = std::exchange(table_, std::move(table));
+    if (redistributed_) {
+      std::vector<double> masses = masses_, volumes = volumes_;
+      try {
+        assemble_masses();
+      } catch (const GeometryError&) {
+        table_ = std::move(before);
+        masses_ = std::move(masses);
+        volumes_ = std::move(volumes);
+        throw;
+      }
+    }
     for_each_region([&](const auto& region, Index) { region.scale_stabilization(quadrature_, table_.stabilization_scale); });
-    if (redistributed_) assemble_masses();
     follow_table();
   }
 

@@ -92,6 +92,9 @@ class BodyPace {
     archive("internal", internal);
     archive("length", length_);
     archive("weight", weight_);
+    archive("held", held_);
+    archive("strain_energy", totals_.strain_energy);
+    archive("stabilization_energy", totals_.stabilization_energy);
     if constexpr (Archive::restoring) due_ = true;
   }
 

@@ -33,7 +33,7 @@ namespace detail {
 
 /// Positions of the nodes of a curve that slide towards the relative spacing that they had first, and their places on the curve as
 /// it is: the cubic spline through the nodes with slopes of parabolas, which meets an axis at a right angle. Where it turns by more than
-/// Redistribution::corner, and at nodes that are held, it has an edge, at which there is a node afterwards too.
+/// Redistribution::corner, and at nodes that are held, it has an edge, at which there is a node afterwards too. The first node of a closed curve stays.
 template <int D>
   requires(D == 2)
 SurfaceTransfer::Slide slide_along(const FacetCurve& curve, const PointCloud<D>& now, const std::vector<Point<D>>& first,
@@ -59,6 +59,7 @@ SurfaceTransfer::Slide slide_along(const FacetCurve& curve, const PointCloud<D>&
     const double along = direction(k == 0 ? n - 1 : k - 1).dot(direction(k));
     if (held[curve.nodes[k]] || along < std::cos(parameters.corner)) corner[k] = 1;
   }
+  if (curve.closed) corner[n] = corner[0];
   std::vector<Point<D>> slope(n + 1);
   for (std::size_t k = 0; k <= n; ++k) {
     const bool end = k == 0 || k == n;

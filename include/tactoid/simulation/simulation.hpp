@@ -359,6 +359,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Throws ParameterError where particles of fluids cannot be redistributed: by their body (Body::require_redistributable), or by a contact or
   /// a term on it that does not say what becomes of what it keeps (surface_transfer.hpp).
   void require_redistributable() const {
+    if (subcycling()) throw ParameterError("Redistribution: bodies that take steps of their own (SubcycledCentralDifference) keep their particles.");
     for_each_body([&](const auto& body, std::size_t b) {
       if (!body.has_fluid()) {
         if (dimension != 2) body.require_redistributable();
@@ -376,7 +377,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
           constexpr bool told = requires(Law& contact, const SurfaceTransfer& surface, const ParticleFields& fields) { contact.redistribute(surface, fields, fields); };
           if (Pair::first == b && !told && !follows_redistribution<Law>) refuse("contact", n);
           if (Pair::second == b && !follows_redistribution<Law>) refuse("contact", n);
-          if constexpr (requires { c.contact.require_redistributable(); }) c.contact.require_redistributable();
+          if constexpr (requires { c.contact.require_redistributable(); })
+            if (Pair::first == b || Pair::second == b) c.contact.require_redistributable();
           ++n;
         };
         (look_at(between), ...);
