@@ -179,6 +179,19 @@ TEST_CASE("A free block") {
   compare(block, compute, scattered);
 }
 
+TEST_CASE("A free block whose gradients are stored in single precision") {
+  const auto compose = [] {
+    Body body{"block", jitter(box({.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {7, 7, 7}}), 0.1), Rkpm<3>{},
+              stored_as<float>(NodalCentroids{.points_per_chunk = 24}), Materials{Region{"body", YangVisco<>{}}}};
+    shake(body, 20.0);
+    return simulation_of(std::move(body));
+  };
+  compare(compose, [](auto& simulation) {
+    take(simulation, 60);
+    return whole(simulation);
+  });
+}
+
 TEST_CASE("Memory of the table falls with the number of ranks, and all rows are somewhere") {
   auto simulation = block();
   const auto& body = simulation.body<0>();
