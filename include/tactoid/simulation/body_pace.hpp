@@ -21,9 +21,13 @@ namespace tactoid {
 class BodyPace {
  public:
   Field internal;  ///< internal forces at the last instant at which they were due, N; 0 where a component is prescribed
+  Field held;      ///< those on prescribed components, N; 0 elsewhere
 
   /// Of a body of n particles that may take steps of its own; without this, it takes every step.
-  void prepare(std::size_t n) { internal.assign(n, Vector4::Zero()); }
+  void prepare(std::size_t n) {
+    internal.assign(n, Vector4::Zero());
+    held.assign(n, Vector4::Zero());
+  }
 
   /// Whether the body has come to the end of a step of its own.
   [[nodiscard]] bool due() const { return due_; }
@@ -58,8 +62,7 @@ class BodyPace {
     due_ = length_ == 0.0 || time_step == 0.0 || age_ > length_ - 0.5 * time_step;
     if (!due_) {
       weight_ = 0.0;
-      std::size_t k = 0;
-      for_each_condition(essential, [&](std::size_t i, int c) { body.force[i][c] += held_[k++]; });
+      for_each_condition(essential, [&](std::size_t i, int c) { body.force[i][c] += held[i][c]; });
       return totals_;
     }
     body.for_each_particle([&](std::size_t i) { internal[i] = body.force[i]; });
@@ -68,8 +71,7 @@ class BodyPace {
     if (length_ > 0.0) std::swap(body.velocity, mean_);
     body.for_each_particle([&](std::size_t i) { internal[i] = body.force[i] - internal[i]; });
     // Prescribed components move as they must: there impulses would only make the reactions jump.
-    held_.clear();
-    for_each_condition(essential, [&](std::size_t i, int c) { held_.push_back(std::exchange(internal[i][c], 0.0)); });
+    for_each_condition(essential, [&](std::size_t i, int c) { held[i][c] = std::exchange(internal[i][c], 0.0); });
     const double share = time_step > 0.0 ? step(time_step) / time_step : weight_;
     weight_ = 1.0;
     weigh(body, share);
@@ -92,7 +94,7 @@ class BodyPace {
     archive("internal", internal);
     archive("length", length_);
     archive("weight", weight_);
-    archive("held", held_);
+    archive("held", held);
     archive("strain_energy", totals_.strain_energy);
     archive("stabilization_energy", totals_.stabilization_energy);
     if constexpr (Archive::restoring) due_ = true;
@@ -127,7 +129,6 @@ class BodyPace {
   double weight_ = 1.0;        // of `internal` in the forces of the body
   bool due_ = true;
   Field start_, mean_;         // displacement at the beginning of the step, m; mean velocity in it, m/s
-  std::vector<double> held_;   // internal forces on prescribed components, N
   BodyTotals totals_;          // energies where the body was due the last time
 };
 

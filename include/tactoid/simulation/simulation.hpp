@@ -686,7 +686,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     std::vector<SharedBody> parts;
     for_each_body([&](auto& body, std::size_t b) {
       parts.push_back(shared_body(body, fields_[b], b));
-      if (subcycling()) parts.back().whole.push_back(&pace_[b].internal);
+      if (subcycling()) parts.back().whole.insert(parts.back().whole.end(), {&pace_[b].internal, &pace_[b].held});
     });
     decomposition_ = ranks.decompose(std::move(parts));
     for_each_body([&](auto& body, std::size_t b) { body.share_with(decomposition_->share(b)); });
