@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include <tactoid/core/errors.hpp>

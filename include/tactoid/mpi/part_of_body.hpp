@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include <mpi.h>
@@ -66,36 +65,41 @@ class PartOfBody final : public BodyShare {
   void drop_rows(PointTable& table) const override {
     if (keep_rows_) return;
     const std::size_t pairs = table.size();
-    const std::vector<std::size_t> rows = std::exchange(table.offsets, {0}), bonds = table.bond_offsets;
-    table.offsets.reserve(rows.size());
-    if (!bonds.empty()) table.bond_offsets.assign(1, 0);
-    std::size_t kept = 0, kept_bonds = 0;
-    for (std::size_t q = 0; q + 1 < rows.size(); ++q) {
-      if (evaluated[q]) {
-        for (std::size_t e = rows[q]; e < rows[q + 1]; ++e, ++kept) {
-          if (table.single_entries.empty()) table.entries[kept] = table.entries[e];
-          else table.single_entries[kept] = table.single_entries[e];
-          if (!table.point_values.empty()) table.point_values[kept] = table.point_values[e];
-        }
-        if (!bonds.empty())
-          for (std::size_t e = bonds[q]; e < bonds[q + 1]; ++e, ++kept_bonds) table.bond_weights[kept_bonds] = table.bond_weights[e];
-      }
-      table.offsets.push_back(kept);
-      if (!bonds.empty()) table.bond_offsets.push_back(kept_bonds);
-    }
-    (table.single_entries.empty() ? table.entries.resize(kept) : table.single_entries.resize(kept));
-    table.entries.shrink_to_fit();
-    table.single_entries.shrink_to_fit();
-    if (!table.point_values.empty()) table.point_values.resize(kept);
-    table.point_values.shrink_to_fit();
-    if (!bonds.empty()) table.bond_weights.resize(kept_bonds);
-    table.bond_weights.shrink_to_fit();
-    table.pairs_elsewhere = pairs - kept;
+    keep_evaluated(table.entries, table.offsets);
+    keep_evaluated(table.single_entries, table.offsets);
+    keep_evaluated(table.point_values, table.offsets);
+    keep_evaluated(table.bond_weights, table.bond_offsets);
+    close_up(table.offsets);
+    close_up(table.bond_offsets);
+    table.pairs_elsewhere = pairs - table.size();
   }
   void gather_chunks(std::span<double> values, std::size_t per_chunk) override { chunk_values_.gather(values, per_chunk); }
   void gather_points(std::span<double> values, std::size_t per_point) override { point_values_.gather(values, per_point); }
 
  private:
+  /// Of a list with the rows that `offsets` tell of, those that are evaluated here.
+  template <class T>
+  void keep_evaluated(std::vector<T>& list, const std::vector<std::size_t>& offsets) const {
+    if (list.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t q = 0; q < evaluated.size(); ++q)
+      if (evaluated[q])
+        for (std::size_t e = offsets[q]; e < offsets[q + 1]; ++e, ++kept) list[kept] = list[e];
+    list.resize(kept);
+    list.shrink_to_fit();
+  }
+  /// And the offsets of the rows that are left; the others are empty.
+  void close_up(std::vector<std::size_t>& offsets) const {
+    if (offsets.empty()) return;
+    std::size_t begin = offsets[0], kept = 0;
+    for (std::size_t q = 0; q < evaluated.size(); ++q) {
+      const std::size_t end = offsets[q + 1];
+      if (evaluated[q]) kept += end - begin;
+      begin = end;
+      offsets[q + 1] = kept;
+    }
+  }
+
   bool keep_rows_;
   OwnedValues chunk_values_, point_values_;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 #include <tactoid/boundary/essential_conditions.hpp>
 #include <tactoid/core/tensor.hpp>

@@ -331,14 +331,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// The same, and particles of fluids are redistributed: then contacts and terms are told (SurfaceTransfer), and `rows` is filled.
   ReferenceUpdate update_references(double distortion, const Redistribution& redistribution) {
     std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> rows(body_count);
-    std::array<SurfaceTransfer, body_count> surfaces;
     ReferenceUpdate done = update_references(distortion, [&](auto& body, std::size_t b) {
       if constexpr (dimension == 2) {
         if (!body.has_fluid()) return body.update_reference();
         RedistributedParticles moved = body.update_reference(redistribution, held_particles(body, b));
         rows[b] = std::move(moved.rows);
-        surfaces[b] = std::move(moved.surface);
-        follow_redistribution(body, b, rows[b], surfaces[b]);
+        follow_redistribution(body, b, rows[b], moved.surface);
       } else {
         body.update_reference();
       }
