@@ -21,6 +21,7 @@
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/all.hpp>
 
+#include "fields.hpp"
 #include "relative.hpp"
 
 namespace integrator_subcycling_test {
@@ -122,16 +123,6 @@ struct LastState {
   }
 };
 
-double difference(const Field& a, const Field& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
-  return largest;
-}
-
-double size(const Field& a) {
-  return difference(a, Field(a.size(), Vector4::Zero()));
-}
-
 void check_same(const SavedState& a, const SavedState& b) {
   REQUIRE(a.size() == b.size());
   for (const auto& [name, array] : a) {
@@ -217,7 +208,7 @@ TEST_CASE("A soft and a stiff body in contact: momentum to round-off, energy as 
   for (const Result& r : {small, own, finer})
     MESSAGE(r.steps, " steps, laws asked ", r.calls[0], " and ", r.calls[1], " times; momentum ", r.momentum / r.exchanged, " of what was exchanged; energy error ",
             r.energy, ", drift ", r.drift, "; ", r.changes, " changes of the step in ", r.cycles, " cycles");
-  MESSAGE("displacements differ by ", difference(small.soft, own.soft) / size(small.soft), " and ", difference(small.soft, finer.soft) / size(small.soft));
+  MESSAGE("displacements differ by ", test::largest_difference(small.soft, own.soft) / test::largest(small.soft), " and ", test::largest_difference(small.soft, finer.soft) / test::largest(small.soft));
   CHECK(small.exchanged > 1e-10 * um);
   for (const Result& r : {own, finer}) CHECK(r.momentum <= 1e-12 * r.exchanged);
   CHECK(own.changes * 5 < own.cycles);
@@ -228,7 +219,7 @@ TEST_CASE("A soft and a stiff body in contact: momentum to round-off, energy as 
   CHECK(finer.drift < own.drift / 3.0);
   CHECK(static_cast<double>(own.calls[0]) < 0.28 * static_cast<double>(small.calls[0]));
   CHECK(static_cast<double>(own.calls[1]) < 1.1 * static_cast<double>(small.calls[1]));
-  CHECK(difference(small.soft, finer.soft) < 1e-2 * size(small.soft));
+  CHECK(test::largest_difference(small.soft, finer.soft) < 1e-2 * test::largest(small.soft));
 }
 
 TEST_CASE("Steps of the bodies' own are of second order") {
@@ -241,7 +232,7 @@ TEST_CASE("Steps of the bodies' own are of second order") {
     Simulation simulation{Bodies{std::move(soft), std::move(stiff)}, Contacts{between<0, 1>(LigandReceptor{})}, Boundaries{}, integrator};
     simulation.run(1.6e-6);
     const auto seen = simulation.template particles<0>().velocity;
-    slip = difference(Field(seen.begin(), seen.end()), simulation.template velocity<0>()) / size(simulation.template velocity<0>());
+    slip = test::largest_difference(Field(seen.begin(), seen.end()), simulation.template velocity<0>()) / test::largest(simulation.template velocity<0>());
     return std::array<Field, 2>{simulation.template body<0>().displacement, simulation.template body<1>().displacement};
   };
   const double longest = 1.6e-6 / 128.0;
@@ -249,7 +240,7 @@ TEST_CASE("Steps of the bodies' own are of second order") {
   std::array<std::array<double, 3>, 3> error{};
   for (std::size_t k = 0; k < 3; ++k) {
     const auto state = end_state(SubcycledCentralDifference{CentralDifference{.time_step = longest / std::pow(2.0, double(k))}, 4});
-    for (std::size_t b = 0; b < 2; ++b) error[k][b] = difference(state[b], exact[b]) / size(exact[b]);
+    for (std::size_t b = 0; b < 2; ++b) error[k][b] = test::largest_difference(state[b], exact[b]) / test::largest(exact[b]);
     error[k][2] = slip;
     MESSAGE("errors of the soft body ", error[k][0], ", of the stiff one ", error[k][1], ", of velocities that contacts see ", slip);
   }
@@ -271,8 +262,8 @@ TEST_CASE("A gel with a director in steps of its own: the state, what it dissipa
   own.run(end);
   const auto& report = own.integrator().report;
   const EnergyLedger &a = small.ledger(), &b = own.ledger();
-  const double moved = difference(own.body<0>().displacement, small.body<0>().displacement) / size(small.body<0>().displacement);
-  const double turned = difference(own.body<0>().director, small.body<0>().director) / difference(start, small.body<0>().director);
+  const double moved = test::largest_difference(own.body<0>().displacement, small.body<0>().displacement) / test::largest(small.body<0>().displacement);
+  const double turned = test::largest_difference(own.body<0>().director, small.body<0>().director) / test::largest_difference(start, small.body<0>().director);
   MESSAGE("steps ", report.body_steps[0], " and ", report.body_steps[1], ", was ", small.steps(), "; displacements differ by ", moved, ", directors by ", turned,
           " of their change; dissipated ", a.dissipated, " and ", b.dissipated, ", external work ", a.external_work, " and ", b.external_work, "; error ", a.error(),
           " and ", b.error());
@@ -310,12 +301,12 @@ TEST_CASE("A viscous body in steps of its own creeps and dissipates as in small 
   const auto [b, w] = run(subcycled_steps(0.1, 8));
   const auto [c, x] = run(subcycled_steps(0.05, 8));
   MESSAGE("dissipated ", a.dissipated, ", ", b.dissipated, " and ", c.dissipated, " of ", a.largest_work, "; error ", a.error(), ", ", b.error(), " and ", c.error(),
-          "; displacements differ by ", difference(u, w) / size(u));
+          "; displacements differ by ", test::largest_difference(u, w) / test::largest(u));
   CHECK(a.dissipated > 0.1 * a.largest_work);
   CHECK(b.dissipated == test::relative(a.dissipated).epsilon(0.05));
   CHECK(b.error() < 0.015);
   CHECK(c.error() < 0.6 * b.error());
-  CHECK(difference(u, w) < 2e-4 * size(u));
+  CHECK(test::largest_difference(u, w) < 2e-4 * test::largest(u));
 }
 
 TEST_CASE("A clamped body in steps of its own: reactions do not jump, and what is held stands still") {
@@ -410,7 +401,7 @@ TEST_CASE("A step that breaks down within a cycle leaves the last small step") {
   CHECK(told);
   CHECK(told_at < moment);
   CHECK(told_at > moment - simulation.last_time_step() * 1.01);
-  CHECK(size(simulation.body<1>().displacement) < 1e-12 * um);
+  CHECK(test::largest(simulation.body<1>().displacement) < 1e-12 * um);
   CHECK(simulation.integrator().report.steps % 8 != 0);
   CHECK(std::all_of(simulation.body<0>().displacement.begin(), simulation.body<0>().displacement.end(), [](const Vector4& u) { return u.allFinite(); }));
   MESSAGE("broke down ", (moment - told_at) / simulation.last_time_step(), " small steps after ", told_at, " s, after ", simulation.steps(), " cycles, ",

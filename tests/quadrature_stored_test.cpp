@@ -5,6 +5,7 @@
 
 #include <tactoid/tactoid.hpp>
 
+#include "fields.hpp"
 #include "relative.hpp"
 
 namespace quadrature_stored_test {
@@ -70,13 +71,9 @@ TEST_CASE("forces in single precision: those of double to 1e-6, no net force, ha
   CHECK(s.strain_energy == test::relative(e.strain_energy).epsilon(1e-6));
   CHECK(s.stabilization_energy == test::relative(e.stabilization_energy).epsilon(1e-5));
   CHECK(s.dissipated_power == test::relative(e.dissipated_power).epsilon(1e-5));
-  double difference = 0.0, size = 0.0;
+  const double difference = test::largest_difference(single.force, exact.force), size = test::largest(exact.force);
   Vector4 net = Vector4::Zero();
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    difference = std::max(difference, (single.force[i] - exact.force[i]).norm());
-    size = std::max(size, exact.force[i].norm());
-    net += single.force[i];
-  }
+  for (const Vector4& f : single.force) net += f;
   CHECK(difference < 1e-6 * size);
   CHECK(difference > 1e-12 * size);
   CHECK(net.norm() < 1e-13 * size);
@@ -98,13 +95,9 @@ TEST_CASE("a run in single precision: momentum to round-off, energy and motion a
   const Vector3 before = momentum(single);
   exact.run(1_us);
   single.run(1_us);
-  double scale = 0.0, difference = 0.0;
   const auto& a = exact.body<0>();
   const auto& b = single.body<0>();
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    scale = std::max(scale, a.velocity[i].norm());
-    difference = std::max(difference, (a.displacement[i] - b.displacement[i]).norm());
-  }
+  const double scale = test::largest(a.velocity), difference = test::largest_difference(a.displacement, b.displacement);
   double mass = 0.0;
   for (const double m : b.masses()) mass += m;
   CHECK(single.steps() > 20);
@@ -147,12 +140,7 @@ TEST_CASE("coefficients, directors and meridian sections take single precision, 
     return body.force;
   };
   const auto compare = [](const Field& a, const Field& b) {
-    double size = 0.0, difference = 0.0;
-    REQUIRE(a.size() == b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      size = std::max(size, a[i].norm());
-      difference = std::max(difference, (a[i] - b[i]).norm());
-    }
+    const double size = test::largest(a), difference = test::largest_difference(a, b);
     CHECK(difference < 2e-6 * size);
     CHECK(difference > 0.0);
   };

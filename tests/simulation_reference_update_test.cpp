@@ -21,6 +21,7 @@
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/all.hpp>
 
+#include "fields.hpp"
 #include "relative.hpp"
 
 namespace simulation_reference_update_test {
@@ -95,9 +96,7 @@ BodyTotals evaluate(AnyBody& body) {
 
 /// Largest difference of two fields over the largest vector of the first.
 double difference(const Field& a, const Field& b) {
-  double largest = 0.0, size = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm()), size = std::max(size, a[i].norm());
-  return largest / size;
+  return test::largest_difference(a, b) / test::largest(a);
 }
 
 /// Σ V J of a body.
