@@ -10,6 +10,7 @@
 #include <tactoid/geometry/all.hpp>
 #include <tactoid/kernel/all.hpp>
 #include <tactoid/quadrature/all.hpp>
+#include <tactoid/quadrature/coarse_space.hpp>
 
 #include "relative.hpp"
 

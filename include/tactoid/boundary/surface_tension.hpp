@@ -26,13 +26,7 @@ struct SurfaceIntegral {
   std::vector<double> smallest;  ///< δ of each facet's points, in the unit of their area vectors: |c| counts as √(|c|² + δ²); empty: 0
 
   /// From the facets of a cloud. Throws GeometryError for a cloud without facets or with periodic directions.
-  void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
-    surface = FacetSurface<D>(cloud);
-    quadrature = FacetQuadrature<D>(surface, body.reference, 2);
-    force.resize(surface.facets.size());
-    value.resize(surface.facets.size());
-    smallest.clear();
-  }
+  void initialize(const PointCloud<D>& cloud, const ParticleFields& body);
 
   /// Lets δ be a share of what |c| is at the present positions.
   void smooth(double share, std::span<const Vector4> x) {
@@ -46,15 +40,7 @@ struct SurfaceIntegral {
   }
 
   /// Adds the forces per facet to the particles and returns the sum of the values.
-  double gather(const ParticleFields& body) const {
-    double sum = 0.0;
-    for (std::size_t f = 0; f < force.size(); ++f) {
-      sum += value[f];
-      for (std::size_t a = 0; a < force[f].size(); ++a)
-        body.force[surface.facets[f][a]].template head<3>() += force[f][a];
-    }
-    return sum;
-  }
+  double gather(const ParticleFields& body) const;
 
   /// For checkpoints: the values per facet, for who reads them before the next step, and δ, which redistribution changes.
   template <class Archive>
@@ -69,26 +55,7 @@ namespace detail {
 /// Area (length, area of the ring) of facet `f` and its gradient in the facet's nodes.
 template <int D>
 double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4> x,
-                  std::array<Vector3, FacetSurface<D>::corners>& gradient) {
-  double area = 0.0;
-  gradient.fill(Vector3::Zero());
-  for (std::size_t p = 0; p < s.quadrature.points.size(); ++p) {
-    const auto& point = s.quadrature.points[p];
-    const FacetTangents a = s.surface.tangents(f, point.local, x);
-    const Vector3 c = a.area_vector();
-    const double length = s.size(f, p, c);
-    area += point.weight * length;
-    const Vector3 m = c / length;
-    const Vector3 by_s = point.weight * a.t.cross(m), by_t = point.weight * m.cross(a.s);
-    const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
-    const auto ring = s.surface.circumference_slopes(point.local);
-    for (std::size_t k = 0; k < gradient.size(); ++k) {
-      gradient[k] += ns[k] * by_s + nt[k] * by_t;
-      gradient[k][0] += ring[k] * by_t[2];
-    }
-  }
-  return area;
-}
+                  std::array<Vector3, FacetSurface<D>::corners>& gradient);
 
 /// Calls emit(i, j, K) with the second derivative of `tension` × area in the nodes of every facet. With c = ∂x/∂s × ∂x/∂t,
 /// |c| as SurfaceIntegral::size has it, m = c/|c| and dc linear in dx: d²|c| = dc·(1 − m mᵀ) dc/|c| + m·d²c. In a meridian section ∂x/∂t is 2πr along e_z.
@@ -134,32 +101,7 @@ void add_area_stiffness(const SurfaceIntegral<D>& s, const ParticleFields& body,
 
 /// Row sums of the stiffness (second derivative) of σ₀ A over the masses: Gershgorin's bound of ω², 1/s².
 template <int D>
-[[nodiscard]] double area_stiffness_rate(const SurfaceIntegral<D>& s, const ParticleFields& body, double tension) {
-  std::vector<double> sum(body.mass.size(), 0.0);
-  for (Index f = 0; f < s.surface.facets.size(); ++f)
-    for (std::size_t p = 0; p < s.quadrature.points.size(); ++p) {
-      const auto& point = s.quadrature.points[p];
-      const FacetTangents a = s.surface.tangents(f, point.local, body.position);
-      const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
-      const double length = s.size(f, p, a.area_vector());
-      auto turn = s.surface.circumference_slopes(point.local);  // how the second tangent follows the nodes
-      double all = 0.0, all_s = 0.0, all_t = 0.0;
-      std::array<double, FacetSurface<D>::corners> g;
-      for (std::size_t k = 0; k < g.size(); ++k) {
-        g[k] = (ns[k] * a.t - nt[k] * a.s).norm();
-        all += g[k];
-        all_s += std::abs(ns[k]);
-        turn[k] += std::abs(nt[k]);
-        all_t += turn[k];
-      }
-      for (std::size_t k = 0; k < g.size(); ++k)
-        sum[s.surface.facets[f][k]] +=
-            tension * point.weight * (g[k] * all / length + std::abs(ns[k]) * all_t + turn[k] * all_s);
-    }
-  double rate = 0.0;
-  for (const Index i : s.surface.nodes) rate = std::max(rate, sum[i] / body.mass[i]);
-  return rate;
-}
+[[nodiscard]] double area_stiffness_rate(const SurfaceIntegral<D>& s, const ParticleFields& body, double tension);
 
 /// Surface tension as the gradient of the surface energy σ₀ A (plane: σ₀ times the length, per thickness): the force at
 /// a particle is −σ₀ ∂A/∂x, with A integrated over the bilinear facets by 2×2 Gauss points. In the limit it is the
@@ -182,31 +124,13 @@ struct SurfaceTension {
   /// Throws ParameterError as validate(), GeometryError for a cloud without facets or with periodic directions.
   template <int D>
     requires(D >= 2)
-  void initialize(const PointCloud<D>& cloud, const ParticleFields& body) {
-    validate();
-    auto& s = integral.emplace<D>();
-    s.initialize(cloud, body);
-    if (smoothing > 0.0) s.smooth(smoothing, body.reference);
-  }
+  void initialize(const PointCloud<D>& cloud, const ParticleFields& body);
 
   /// Facets have new sizes now, of which `smoothing` is a share.
-  void redistribute(const SurfaceTransfer&, const ParticleFields& body) {
-    integral.visit([&](auto& s) {
-      s.smallest.clear();
-      if (smoothing > 0.0) s.smooth(smoothing, body.position);
-    });
-  }
+  void redistribute(const SurfaceTransfer&, const ParticleFields& body);
 
   /// Adds −σ₀ ∂A/∂x_I and returns σ₀ A.
-  TermEnergy apply(const ParticleFields& body, double) {
-    return integral.visit([&]<int D>(SurfaceIntegral<D>& s) {
-      parallel_for(s.force.size(), [&](std::size_t f) {
-        s.value[f] = tension * detail::facet_area(s, static_cast<Index>(f), body.position, s.force[f]);
-        for (Vector3& g : s.force[f]) g *= -tension;
-      });
-      return TermEnergy{.potential = s.gather(body)};
-    });
-  }
+  TermEnergy apply(const ParticleFields& body, double);
 
   /// The exact second derivative of σ₀ A.
   template <class Emit>
@@ -215,21 +139,17 @@ struct SurfaceTension {
   }
 
   /// Gershgorin's bound, see area_stiffness_rate.
-  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
-    return integral.visit([&](const auto& s) { return area_stiffness_rate(s, body, tension); });
-  }
+  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const;
 
   /// Current area of the surface, m² (plane: length, m), at the last call of apply; tension must be positive. With `smoothing` a little more.
-  [[nodiscard]] double area() const {
-    return integral.visit([&](const auto& s) {
-      double sum = 0.0;
-      for (const double v : s.value) sum += v;
-      return sum / tension;
-    });
-  }
+  [[nodiscard]] double area() const;
   /// For checkpoints: the area.
   template <class Archive>
   void state(Archive& archive) { archive.part("integral", integral); }
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/boundary/surface_tension.ipp>
+#endif

@@ -18,16 +18,7 @@ struct FirstTouch {
 
   /// Particles that touch for the first time at these gaps (m, one per particle; infinity = not on the surface),
   /// ascending.
-  std::vector<Index> update(std::span<const double> gaps) {
-    touched.resize(gaps.size(), 0);
-    std::vector<Index> first;
-    for (std::size_t i = 0; i < gaps.size(); ++i) {
-      if (touched[i] || !(gaps[i] <= capture_distance)) continue;
-      touched[i] = 1;
-      first.push_back(static_cast<Index>(i));
-    }
-    return first;
-  }
+  std::vector<Index> update(std::span<const double> gaps);
 
   /// For checkpoints: who has touched.
   template <class Archive>
@@ -35,3 +26,7 @@ struct FirstTouch {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/first_touch.ipp>
+#endif

@@ -18,28 +18,11 @@ class SurfaceGaps {
   /// Builds both surfaces and measures once. Throws GeometryError for a cloud without facets or with periodic
   /// directions.
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
-                  const ParticleFields& b) {
-    surface_ = FacetSurface<D>(cloud_a);
-    master_ = FacetSurface<D>(cloud_b);
-    gaps_.assign(cloud_a.size(), std::numeric_limits<double>::infinity());
-    normals_.assign(cloud_a.size(), Vector4::Zero());
-    points_.resize(surface_.nodes.size());
-    tracker_ = {};
-    measure(a, b);
-  }
+                  const ParticleFields& b);
 
   /// Brings gaps and normals to the present positions. Call it as often as they are needed, at best in regular
   /// intervals.
-  std::span<const double> measure(const ParticleFields& a, const ParticleFields& b) {
-    for (std::size_t k = 0; k < points_.size(); ++k) points_[k] = a.position[surface_.nodes[k]];
-    tracker_.update(master_, points_, b.position);
-    const auto closest = tracker_.closest();
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      gaps_[surface_.nodes[k]] = closest[k].gap;
-      normals_[surface_.nodes[k]] = pad(closest[k].normal);
-    }
-    return gaps_;
-  }
+  std::span<const double> measure(const ParticleFields& a, const ParticleFields& b);
 
   /// Signed gap per particle of A, m; infinity for particles that are not on the surface.
   [[nodiscard]] std::span<const double> gaps() const { return gaps_; }
@@ -67,3 +50,7 @@ class SurfaceGaps {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/gaps.ipp>
+#endif

@@ -25,15 +25,7 @@ struct LigandReceptorLaw {
   double cutoff = 20.0;               ///< gap beyond which there is no force, × ε, > √(5/3)
 
   /// Throws ParameterError for a value that is not in its range.
-  void validate() const {
-    require_non_negative("LigandReceptor.bond_density", bond_density, "1/m^2");
-    require_non_negative("LigandReceptor.binding_energy", binding_energy, "J");
-    require_positive("LigandReceptor.range", range, "m");
-    if (!(floor > 0.0 && floor < 1.0)) reject("LigandReceptor.floor", floor, "(x range)", "between 0 and 1");
-    if (!(cutoff > std::sqrt(5.0 / 3.0)) || !std::isfinite(cutoff))
-      reject("LigandReceptor.cutoff", cutoff, "(x range)",
-             "finite and above sqrt(5/3) = 1.291, the gap of peak attraction");
-  }
+  void validate() const;
 
   [[nodiscard]] double reach() const { return cutoff * range; }  ///< cutoff ε, m
 
@@ -105,21 +97,17 @@ struct LigandReceptor {
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
-                  const ParticleFields& b) {
-    engine.initialize<D>(law(), cloud_a, a, cloud_b, b, points_per_direction, two_pass);
-  }
+                  const ParticleFields& b);
   /// See SurfaceContactEngine.
-  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) { return engine.apply(law(), a, b, area); }
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double);
   /// Bonds are carried along with the surface, also where particles slide along it: their number stays.
-  void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&) { engine.redistribute(surface); }
+  void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&);
   /// Throws ParameterError for two passes.
   void require_redistributable() const {
     if (two_pass) throw ParameterError("Redistribution: LigandReceptor.two_pass keeps particles where they are.");
   }
   /// Bound of ω² at the present gaps, 1/s².
-  [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
-    return engine.stiffness_rate(law(), a, b);
-  }
+  [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
   /// At the gaps of the last call of apply; see ContactPass::emit_stiffness.
   template <class Emit>
   void add_stiffness(const ParticleFields&, const ParticleFields&, const Emit& emit) const {
@@ -131,3 +119,7 @@ struct LigandReceptor {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/ligand_receptor.ipp>
+#endif

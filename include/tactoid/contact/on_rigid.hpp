@@ -64,15 +64,7 @@ class RigidPass {
   }
 
   /// Gershgorin's bound of ω² at the gaps of the last call of apply (and of two steps ahead), 1/s².
-  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const {
-    std::vector<double> sum(body.mass.size(), 0.0);
-    for (std::size_t q = 0; q < states_.size(); ++q)
-      for (std::size_t k = 0; k < quadrature_.point(q).shape.size(); ++k)
-        sum[surface_.facets[quadrature_.facet_of(q)][k]] += states_[q].stiffness_ahead * quadrature_.point(q).shape[k];
-    double rate = 0.0;
-    for (std::size_t i = 0; i < sum.size(); ++i) rate = std::max(rate, sum[i] / body.mass[i]);
-    return rate;
-  }
+  [[nodiscard]] double stiffness_rate(const ParticleFields& body) const;
 
   /// Calls emit(i, j, K), K = −∂f_i/∂x_j in the normal direction; the turn of the normal of a curved surface is left out.
   template <class Emit>
@@ -219,3 +211,7 @@ struct RigidPlate {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/on_rigid.ipp>
+#endif

@@ -33,13 +33,7 @@ struct RigidPlane {
   Vector3 velocity = Vector3::Zero();  ///< m/s
 
   /// Throws ParameterError for a normal of no length, and for what is not finite.
-  void validate() const {
-    for (int k = 0; k < 3; ++k) {
-      require_finite("RigidPlane.point", point[k], "m");
-      require_finite("RigidPlane.velocity", velocity[k], "m/s");
-    }
-    require_positive("length of RigidPlane.normal", normal.norm());
-  }
+  void validate() const;
   /// Gap of x (m) at the time (s).
   [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
     const Vector3 n = normal.normalized();
@@ -54,13 +48,7 @@ struct RigidSphere {
   Vector3 velocity = Vector3::Zero();  ///< m/s
 
   /// Throws ParameterError unless radius > 0, and for what is not finite.
-  void validate() const {
-    for (int k = 0; k < 3; ++k) {
-      require_finite("RigidSphere.center", center[k], "m");
-      require_finite("RigidSphere.velocity", velocity[k], "m/s");
-    }
-    require_positive("RigidSphere.radius", radius, "m");
-  }
+  void validate() const;
   /// Gap of x (m) at the time (s); in the centre the normal is z.
   [[nodiscard]] RigidGap at(const Vector3& x, double time) const {
     const Vector3 r = x - center - time * velocity;
@@ -92,3 +80,7 @@ struct Moving {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/rigid_surface.ipp>
+#endif

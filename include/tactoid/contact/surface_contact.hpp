@@ -38,15 +38,7 @@ class ContactPass {
   /// GeometryError for a cloud without facets or with periodic directions, ParameterError unless points_per_direction
   /// is 1 to 4.
   void initialize(const PointCloud<D>& slave_cloud, const ParticleFields& slave, const PointCloud<D>& master_cloud,
-                  const ParticleFields& master, int points_per_direction, double reach) {
-    slave_ = FacetSurface<D>(slave_cloud);
-    master_ = FacetSurface<D>(master_cloud);
-    quadrature_ = FacetQuadrature<D>(slave_, slave.reference, points_per_direction);
-    points_.resize(quadrature_.size());
-    states_.resize(quadrature_.size());
-    locate(slave);
-    tracker_.search(master_, points_, master.position, reach);
-  }
+                  const ParticleFields& master, int points_per_direction, double reach);
 
   /// Adds the forces of `law`, times `factor`, to both bodies.
   template <GapLaw Law>
@@ -203,10 +195,7 @@ class SurfaceContactEngine {
   }
 
   /// A's particles slid along its surface; see ContactPass.
-  void redistribute(const SurfaceTransfer& surface) {
-    if (!back_.empty()) throw ParameterError("Redistribution: a contact in two passes keeps its particles.");
-    forth_.visit([&](auto& pass) { pass.redistribute(surface); });
-  }
+  void redistribute(const SurfaceTransfer& surface);
 
   /// Gershgorin's bound of ω² at the gaps of the last call of apply, 1/s².
   template <GapLaw Law>
@@ -282,3 +271,7 @@ struct SurfaceContact {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/surface_contact.ipp>
+#endif

@@ -18,26 +18,7 @@ struct FacetCurve {
 };
 
 /// The curves of a surface, each once, in the order of their first facets.
-[[nodiscard]] inline std::vector<FacetCurve> facet_curves(const FacetSurface<2>& surface) {
-  std::vector<FacetCurve> curves;
-  std::vector<char> taken(surface.facets.size(), 0);
-  for (Index seed = 0; seed < surface.facets.size(); ++seed) {
-    if (taken[seed]) continue;
-    Index first = seed;
-    FacetCurve curve;
-    for (Index f = surface.side_neighbors[seed][0]; f != no_facet && f != seed; f = surface.side_neighbors[f][0]) first = f;
-    curve.closed = surface.side_neighbors[first][0] != no_facet;  // went around, up to the neighbour of the seed
-    if (curve.closed) first = seed;
-    for (Index f = first; f != no_facet && !taken[f]; f = surface.side_neighbors[f][1]) {
-      taken[f] = 1;
-      curve.facets.push_back(f);
-      curve.nodes.push_back(surface.facets[f][0]);
-    }
-    curve.nodes.push_back(surface.facets[curve.facets.back()][1]);
-    curves.push_back(std::move(curve));
-  }
-  return curves;
-}
+[[nodiscard]] std::vector<FacetCurve> facet_curves(const FacetSurface<2>& surface);
 
 /// What becomes of amounts on the facets of a surface (areas, receptors, bonds) whose particles slid along it: each new facet takes the
 /// amounts of the parts of the old ones that it covers, in proportion to their present area. What is summed over a curve stays as it is.
@@ -96,18 +77,11 @@ class SurfaceTransfer {
   }
 
   /// Amounts per facet and point of a quadrature (facet-major), on the new facets.
-  [[nodiscard]] std::vector<double> carry(const std::vector<double>& weights, const std::vector<double>& amounts) const {
-    std::vector<double> carried(amounts.size(), 0.0);
-    for_each_share(weights, [&](std::size_t to, std::size_t from, double share) { carried[to] += share * amounts[from]; });
-    return carried;
-  }
+  [[nodiscard]] std::vector<double> carry(const std::vector<double>& weights, const std::vector<double>& amounts) const;
 
  private:
   /// Of the first s of a facet: of the cone between its rings, over π.
-  [[nodiscard]] static double area(const Slide& slide, std::size_t k, double s) {
-    const double a = slide.radii[k], b = slide.radii[k + 1];
-    return slide.lengths[k] * s * (2.0 * a + (b - a) * s);
-  }
+  [[nodiscard]] static double area(const Slide& slide, std::size_t k, double s);
 
   std::vector<Slide> slides_;
 };
@@ -123,3 +97,7 @@ inline constexpr bool follows_redistribution = [] {
 }();
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/surface_transfer.ipp>
+#endif

@@ -10,7 +10,6 @@
 #include <tactoid/contact/closest_point.hpp>
 #include <tactoid/contact/surface.hpp>
 #include <tactoid/core/parallel.hpp>
-#include <tactoid/neighbors/neighbor_search.hpp>
 
 namespace tactoid {
 
@@ -31,109 +30,15 @@ class ClosestPointTracker {
   /// Global search for all query points (m) on the surface with its nodes at `x` (m). Query points further away than
   /// `reach` (m) plus the motion until the next global search need not be followed until then.
   void search(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
-              double reach = std::numeric_limits<double>::infinity()) {
-    const std::size_t count = surface.facets.size();
-    std::vector<Point<D>> middle(count);
-    std::vector<Extent> extent(count);
-    double largest = 0.0, sum = 0.0;
-    for (Index f = 0; f < count; ++f) {
-      const auto& corners = surface.facets[f];
-      Vector4 m = Vector4::Zero();
-      for (const Index n : corners) m += x[n];
-      m /= static_cast<double>(corners.size());
-      double r2 = 0.0;
-      for (const Index n : corners) r2 = std::max(r2, (x[n] - m).squaredNorm());
-      middle[f] = m.template head<D>();
-      const Vector3 normal = surface.normal(f, FacetSurface<D>::make_local(0.5, 0.5), x);
-      extent[f] = {m.template head<3>(), normal, std::sqrt(r2), 0.0};
-      for (const Index n : corners)
-        extent[f].thickness = std::max(extent[f].thickness, std::abs(normal.dot((x[n] - m).template head<3>())));
-      largest = std::max(largest, extent[f].radius);
-      sum += extent[f].radius;
-    }
-    // That of the first search, for good: an implicit step may try a state in which facets are huge.
-    if (!(facet_size_ > 0.0) && std::isfinite(sum)) facet_size_ = 2.0 * sum / static_cast<double>(count);
-    reach_ = reach;
-    closest_.assign(queries.size(), {});
-    asleep_.assign(queries.size(), 0);
-    queries_then_.assign(queries.begin(), queries.end());
-    nodes_then_.resize(surface.nodes.size());
-    for (std::size_t k = 0; k < surface.nodes.size(); ++k) nodes_then_[k] = x[surface.nodes[k]];
-    if (!std::isfinite(sum)) {  // a motion that broke down: the gaps say so
-      for (auto& c : closest_) c.gap = std::numeric_limits<double>::quiet_NaN();
-      return;
-    }
-    const NeighborSearch<D> tree{middle};
-    parallel_for(queries.size(), [&](std::size_t i) {
-      const Vector3 q = queries[i].template head<3>();
-      const Point<D> p = queries[i].template head<D>();
-      if (!q.allFinite()) {
-        closest_[i].gap = std::numeric_limits<double>::quiet_NaN();
-        return;
-      }
-      Index best = static_cast<Index>(tree.nearest(p));
-      FacetProjection<D> projection = project_on_facet(surface, best, x, q);
-      thread_local std::vector<Index> candidates;
-      tree.within(p, (std::sqrt(projection.squared_distance) + largest) * (1.0 + 1e-12), candidates);
-      for (const Index f : candidates) {
-        if (f == best || extent[f].least_square(q) > projection.squared_distance * (1.0 + 1e-12)) continue;
-        const FacetProjection<D> other = project_on_facet(surface, f, x, q);
-        const bool nearer = other.squared_distance < projection.squared_distance;
-        if (nearer || (other.squared_distance == projection.squared_distance && f < best)) {
-          projection = other;
-          best = f;
-        }
-      }
-      closest_[i] = complete(surface, best, projection, x, q);
-      asleep_[i] = closest_[i].gap > reach + search_after * facet_size_;
-    });
-  }
+              double reach = std::numeric_limits<double>::infinity());
 
   /// Closest points at the present positions. Query points whose gap cannot have come below `reach` (m) since the
   /// last global search are not followed: they keep the gap of that search, which is larger than `reach`.
   void update(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
-              double reach = std::numeric_limits<double>::infinity()) {
-    const double allowed = search_after * facet_size_;
-    if (closest_.size() != queries.size() || reach > reach_ || !(motion(surface, queries, x) <= allowed)) {
-      search(surface, queries, x, reach);
-      return;
-    }
-    parallel_for(queries.size(), [&](std::size_t i) {
-      if (asleep_[i]) return;
-      closest_[i] = walk(surface, closest_[i].facet, x, queries[i].template head<3>());
-    });
-  }
+              double reach = std::numeric_limits<double>::infinity());
 
   /// Local minimum of the distance from q (m) over a facet and its neighbours, from facet `f` downhill.
-  static ClosestPoint<D> walk(const FacetSurface<D>& surface, Index f, std::span<const Vector4> x, const Vector3& q) {
-    FacetProjection<D> here = project_on_facet(surface, f, x, q);
-    for (;;) {
-      Index next = f;
-      FacetProjection<D> there = here;
-      const auto look_at = [&](Index g) {
-        if (g == f || g == no_facet) return;
-        const FacetProjection<D> other = project_on_facet(surface, g, x, q);
-        if (other.squared_distance < there.squared_distance) {
-          there = other;
-          next = g;
-        }
-      };
-      const auto& corners = surface.facets[f];
-      if (here.interior()) {
-        for (std::size_t k = 0; k < FacetSurface<D>::sides; ++k)
-          if (rises_toward(surface, f, k, here, x, q)) look_at(surface.neighbors_of(f)[k]);
-      } else if (here.corner >= 0) {
-        for (const Index g : surface.facets_of(corners[static_cast<std::size_t>(here.corner)])) look_at(g);
-      } else {
-        for (const std::size_t end : surface.side_corners(static_cast<std::size_t>(here.side)))
-          for (const Index g : surface.facets_of(corners[end])) look_at(g);
-      }
-      if (next == f) break;
-      f = next;
-      here = there;
-    }
-    return complete(surface, f, here, x, q);
-  }
+  static ClosestPoint<D> walk(const FacetSurface<D>& surface, Index f, std::span<const Vector4> x, const Vector3& q);
 
   /// One entry per query point.
   [[nodiscard]] std::span<const ClosestPoint<D>> closest() const { return closest_; }
@@ -179,49 +84,17 @@ class ClosestPointTracker {
     Vector3 middle, normal;
     double radius, thickness;
     /// Lower bound of the squared distance from q.
-    [[nodiscard]] double least_square(const Vector3& q) const {
-      const Vector3 r = q - middle;
-      const double height = r.dot(normal), side = std::sqrt(std::max(r.squaredNorm() - height * height, 0.0));
-      const double above = std::max(std::abs(height) - thickness, 0.0), beside = std::max(side - radius, 0.0);
-      return above * above + beside * beside;
-    }
+    [[nodiscard]] double least_square(const Vector3& q) const;
   };
 
   /// Whether the facet behind side `k` can be nearer to q than the point p inside facet `f`: it must bend toward q
   /// so much that it reaches into the sphere around q through p. A plane that leaves the tangent plane of p at the
   /// distance δ with the slope m does so only if δ < |q − p| m/2; a quarter more is kept in hand for warped facets.
   static bool rises_toward(const FacetSurface<D>& surface, Index f, std::size_t k, const FacetProjection<D>& p,
-                           std::span<const Vector4> x, const Vector3& q) {
-    const Index g = surface.neighbors_of(f)[k];
-    if (g == no_facet) return false;
-    const Vector3 up = q - p.point;  // normal to the facet
-    const auto [a, b] = surface.side_corners(k);
-    const Index na = surface.facets[f][a], nb = surface.facets[f][b];
-    const Vector3 edge_start = x[na].template head<3>();
-    Vector3 edge = Vector3::UnitZ();
-    if constexpr (D == 3) edge = x[nb].template head<3>() - edge_start;
-    for (const Index n : surface.facets[g]) {
-      if (n == na || n == nb) continue;
-      const Vector3 corner = x[n].template head<3>();
-      const double height = up.dot(corner - p.point);  // |q − p| × height
-      if (height <= 1e-9 * up.squaredNorm()) continue;
-      const double delta = (edge_start - p.point).cross(edge).squaredNorm();  // δ²|e|²
-      const double length = (corner - edge_start).cross(edge).squaredNorm();  // L²|e|²
-      const double e2 = edge.squaredNorm();
-      if (delta * length < 0.4 * height * height * e2 * e2) return true;
-    }
-    return false;
-  }
+                           std::span<const Vector4> x, const Vector3& q);
 
   /// Bound of how far a query point and the surface can have moved against each other since the last search.
-  double motion(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x) const {
-    double of_queries = 0.0, of_nodes = 0.0;
-    for (std::size_t i = 0; i < queries.size(); ++i)
-      of_queries = std::max(of_queries, (queries[i] - queries_then_[i]).squaredNorm());
-    for (std::size_t k = 0; k < surface.nodes.size(); ++k)
-      of_nodes = std::max(of_nodes, (x[surface.nodes[k]] - nodes_then_[k]).squaredNorm());
-    return std::sqrt(of_queries) + std::sqrt(of_nodes);
-  }
+  double motion(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x) const;
 
   std::vector<ClosestPoint<D>> closest_;
   std::vector<char> asleep_;         // too far away to matter before the next global search
@@ -231,3 +104,7 @@ class ClosestPointTracker {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/tracking.ipp>
+#endif

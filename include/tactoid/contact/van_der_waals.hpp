@@ -23,12 +23,7 @@ struct ParticlesOnSurface {
   Field forces;                  ///< scratch: on the particles, N
   std::vector<double> energies;  ///< scratch: energy (J) or power (W) of each particle
   /// Brings closest points and gaps to the present positions, m.
-  void update(std::span<const Vector4> particles, std::span<const Vector4> surface) {
-    tracker.update(master, particles, surface);
-    gaps.resize(particles.size());
-    const auto closest = tracker.closest();
-    for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = closest[i].gap;
-  }
+  void update(std::span<const Vector4> particles, std::span<const Vector4> surface);
   /// For checkpoints: gaps, and the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) {
@@ -66,27 +61,16 @@ struct VanDerWaals {
   template <int D>
     requires(D >= 2)
   void initialize(const PointCloud<D>&, const ParticleFields& a, const PointCloud<D>& cloud_b,
-                  const ParticleFields& b) {
-    validate();
-    auto& p = particles.emplace<D>();
-    p.master = FacetSurface<D>(cloud_b);
-    p.update(a.position, b.position);
-  }
+                  const ParticleFields& b);
 
   /// Adds −m_I G e^{−g/d₀} n; returns the energy with `reaction`, else the power.
-  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) {
-    return particles.visit([&](auto& p) { return apply_to(p, a, b); });
-  }
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double);
 
   /// G/d₀ e^{−g/d₀} at the least gap, 1/s²; with `reaction` for the surface of B too.
-  [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
-    return particles.visit([&](const auto& p) { return rate_of(p, a, b); });
-  }
+  [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
 
   /// Signed gap of every particle of A (inside and on the surface) at the last call of apply, m.
-  [[nodiscard]] std::span<const double> gaps() const {
-    return particles.visit([](const auto& p) { return std::span<const double>(p.gaps); });
-  }
+  [[nodiscard]] std::span<const double> gaps() const;
   /// For checkpoints: gaps, and the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("particles", particles); }
@@ -136,3 +120,7 @@ struct VanDerWaals {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/contact/van_der_waals.ipp>
+#endif

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include <tactoid/core/compiled.hpp>
+
 namespace tactoid {
 
 /// Index of a particle, a quadrature point, a facet or a cell.

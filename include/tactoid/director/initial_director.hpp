@@ -64,17 +64,7 @@ struct RandomDirectorOptions {
 class RandomDirector {
  public:
   /// Throws ParameterError unless correlation_length > 0 and modes >= 1.
-  explicit RandomDirector(const RandomDirectorOptions& options = {}) {
-    require_positive("RandomDirector.correlation_length", options.correlation_length, "m");
-    if (options.modes < 1) reject("RandomDirector.modes", options.modes, "", "at least 1");
-    Random random(options.seed);
-    modes_.resize(static_cast<std::size_t>(options.modes));
-    for (auto& mode : modes_)
-      for (auto& wave : mode) {
-        for (int k = 0; k < 3; ++k) wave.number(k) = random.normal() / options.correlation_length;
-        wave.phase = 2.0 * std::numbers::pi * random.uniform();
-      }
-  }
+  explicit RandomDirector(const RandomDirectorOptions& options = {});
 
   /// The director at X, m; of unit length.
   [[nodiscard]] Vector3 operator()(const Vector3& X) const {
@@ -115,3 +105,7 @@ template <int D, InitialDirector F>
 }
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/director/initial_director.ipp>
+#endif

@@ -28,19 +28,10 @@ namespace detail {
 /// shortest cell edge. Particles on facets stay. `fraction` is in [0, 0.5); the same seed gives the same cloud
 /// on every machine. Throws ParameterError for the fraction, GeometryError if a cell inverts.
 template <int D>
-[[nodiscard]] PointCloud<D> jitter(const PointCloud<D>& cloud, double fraction, std::uint64_t seed = 1) {
-  if (!(fraction >= 0.0 && fraction < 0.5)) reject("jitter.fraction", fraction, "", "in [0, 0.5)");
-  PointCloud<D> moved = cloud;
-  const std::vector<bool> fixed = on_boundary(cloud);
-  const std::vector<double> spacing = shortest_edges(cloud);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (fixed[i]) continue;
-    for (int k = 0; k < D; ++k)
-      moved.positions[i][k] +=
-          fraction * spacing[i] * detail::hashed_uniform(seed, i * 4 + static_cast<std::uint64_t>(k));
-  }
-  validate(moved);
-  return moved;
-}
+[[nodiscard]] PointCloud<D> jitter(const PointCloud<D>& cloud, double fraction, std::uint64_t seed = 1);
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/geometry/jitter.ipp>
+#endif

@@ -13,11 +13,7 @@ namespace tactoid::detail {
 /// The point of the unit sphere (circle) that belongs to the point `d` of the surface of the cube [−1, 1]^D:
 /// equiangular, so that equal steps on the cube are nearly equal angles.
 template <int D>
-[[nodiscard]] Point<D> equiangular_direction(const Point<D>& d) {
-  Point<D> t;
-  for (int k = 0; k < D; ++k) t[k] = std::tan(0.25 * std::numbers::pi * d[k]);
-  return t.normalized();
-}
+[[nodiscard]] Point<D> equiangular_direction(const Point<D>& d);
 
 /// Lattice point of [−1, 1]^D as its distance s from the centre in the maximum norm and its direction d = c / s on
 /// the surface of the cube.
@@ -124,3 +120,7 @@ template <int D, class CoreMap, class ShellMap>
 }
 
 }  // namespace tactoid::detail
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/geometry/o_grid.ipp>
+#endif

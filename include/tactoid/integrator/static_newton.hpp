@@ -82,15 +82,7 @@ struct StaticNewton {
   int max_linear_iterations = 20000;  ///< of the conjugate gradients, per iteration of Newton's method
 
   /// Throws ParameterError for a parameter out of the range that is given beside it.
-  void validate() const {
-    require_positive("StaticNewton.tolerance", tolerance);
-    if (max_iterations < 1) reject("StaticNewton.max_iterations", max_iterations, "", "at least 1");
-    if (load_steps < 1) reject("StaticNewton.load_steps", load_steps, "", "at least 1");
-    if (max_cuts < 0) reject("StaticNewton.max_cuts", max_cuts, "", "zero or positive");
-    if (!(linear_tolerance > 0.0 && linear_tolerance < 1.0))
-      reject("StaticNewton.linear_tolerance", linear_tolerance, "", "between 0 and 1");
-    if (max_linear_iterations < 1) reject("StaticNewton.max_linear_iterations", max_linear_iterations, "", "at least 1");
-  }
+  void validate() const;
 
   /// Brings the problem to equilibrium under its full load. Throws ComputationError where that fails.
   template <EquilibriumProblem Problem>
@@ -293,11 +285,11 @@ struct StaticNewton {
   }
 
   [[noreturn]] static void fail(double fraction, int iteration, double residual,
-                                const std::string& cause) {
-    throw ComputationError(fmt::format(
-        "StaticNewton found no equilibrium at {:.4g} of the load: relative residual {:.2e} after {} iterations; {}.",
-        fraction, residual, iteration, cause));
-  }
+                                const std::string& cause);
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/integrator/static_newton.ipp>
+#endif

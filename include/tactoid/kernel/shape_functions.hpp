@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -41,52 +42,15 @@ struct ShapeFunctionOptions {
 
 namespace detail {
 
-/// The neighbours of a point as a kernel takes them.
+/// What is asked of a kernel at a point; returns the condition number of its moment matrix.
 template <int D>
-void gather(const PointCloud<D>& cloud, const Point<D>& x, std::span<const Index> row,
-            const std::vector<double>& supports, const std::vector<double>& volumes,
-            std::vector<KernelNeighbor<D>>& out) {
-  out.clear();
-  for (const Index i : row) out.push_back({cloud.difference(x, cloud.positions[i]), supports[i], volumes[i]});
-}
+using EvaluateKernel = std::function<double(std::span<const KernelNeighbor<D>>, ShapeFunctions<D>&)>;
 
-template <Kernel K, class Evaluate>
-[[nodiscard]] ShapeFunctionTable<K::dimension> fill_table(const K& kernel, const PointCloud<K::dimension>& cloud,
-                                                          const std::vector<Point<K::dimension>>& points,
-                                                          const ShapeFunctionOptions& options, bool with_values,
-                                                          const Evaluate& evaluate) {
-  constexpr int D = K::dimension;
-  kernel.validate();
-  options.validate();
-  const std::vector<double> supports = support_radii(kernel, cloud);
-  const std::vector<double> volumes = nodal_volumes(cloud);
-  NeighborTable neighbors = neighbor_table(cloud, points, supports);
-  ShapeFunctionTable<D> table;
-  table.gradients.resize(neighbors.indices.size());
-  if (with_values) table.values.resize(neighbors.indices.size());
-  std::vector<double> conditions(points.size());
-  parallel_for(points.size(), [&](std::size_t q) {
-    thread_local std::vector<KernelNeighbor<D>> near;
-    thread_local ShapeFunctions<D> shape;
-    gather<D>(cloud, points[q], neighbors.row(q), supports, volumes, near);
-    conditions[q] = evaluate(std::span<const KernelNeighbor<D>>(near), shape);
-    const auto first = static_cast<std::ptrdiff_t>(neighbors.offsets[q]);
-    std::copy(shape.gradient.begin(), shape.gradient.end(), table.gradients.begin() + first);
-    if (with_values) std::copy(shape.value.begin(), shape.value.end(), table.values.begin() + first);
-  });
-  for (std::size_t q = 0; q < points.size(); ++q) {
-    if (!(conditions[q] <= options.condition_limit))
-      throw GeometryError(fmt::format(
-          "Point {} at {} has {} particles in reach, and a moment matrix of condition number {:.3g} (allowed: {:.3g}) "
-          "for {} basis functions: enlarge the support of the kernel ({:g} spacings), or mend the cloud there.",
-          q, describe<D>(points[q]), neighbors.row(q).size(), conditions[q], options.condition_limit, K::basis_size,
-          kernel.support));
-    table.largest_condition = std::max(table.largest_condition, conditions[q]);
-  }
-  table.offsets = std::move(neighbors.offsets);
-  table.indices = std::move(neighbors.indices);
-  return table;
-}
+/// `radii` are those of support_radii, `support` and `basis_size` those of the kernel.
+template <int D>
+[[nodiscard]] ShapeFunctionTable<D> fill_table(const PointCloud<D>& cloud, const std::vector<Point<D>>& points, const ShapeFunctionOptions& options,
+                                               const std::vector<double>& radii, double support, int basis_size, bool with_values,
+                                               const EvaluateKernel<D>& evaluate);
 
 }  // namespace detail
 
@@ -98,11 +62,12 @@ template <Kernel K>
                                                                const std::vector<Point<K::dimension>>& points,
                                                                const ShapeFunctionOptions& options = {}) {
   constexpr int D = K::dimension;
-  return detail::fill_table(kernel, cloud, points, options, true,
-                            [&](std::span<const KernelNeighbor<D>> near, ShapeFunctions<D>& shape) {
-                              kernel.shape_functions(near, shape);
-                              return shape.condition;
-                            });
+  kernel.validate();
+  return detail::fill_table<D>(cloud, points, options, support_radii(kernel, cloud), kernel.support, K::basis_size, true,
+                               [&](std::span<const KernelNeighbor<D>> near, ShapeFunctions<D>& shape) {
+                                   kernel.shape_functions(near, shape);
+                                   return shape.condition;
+                                 });
 }
 
 /// Value-based gradients G_qI of the cloud at the given points: Σ_I G_qI f(X_I) = ∇f(X_q) for f of the basis. Throws as
@@ -112,10 +77,11 @@ template <Kernel K>
                                                                 const std::vector<Point<K::dimension>>& points,
                                                                 const ShapeFunctionOptions& options = {}) {
   constexpr int D = K::dimension;
-  return detail::fill_table(kernel, cloud, points, options, false,
-                            [&](std::span<const KernelNeighbor<D>> near, ShapeFunctions<D>& shape) {
-                              return kernel.direct_gradient(near, shape.gradient);
-                            });
+  kernel.validate();
+  return detail::fill_table<D>(cloud, points, options, support_radii(kernel, cloud), kernel.support, K::basis_size, false,
+                               [&](std::span<const KernelNeighbor<D>> near, ShapeFunctions<D>& shape) {
+                                   return kernel.direct_gradient(near, shape.gradient);
+                                 });
 }
 
 /// Interpolated value Σ_I φ_I(X_q) f_I at point q of a field given by its coefficients; T is a double or a vector.
@@ -128,3 +94,7 @@ template <int D, class T>
 }
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/kernel/shape_functions.ipp>
+#endif

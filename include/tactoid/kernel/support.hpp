@@ -7,7 +7,6 @@
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/geometry/measures.hpp>
 #include <tactoid/kernel/kernel.hpp>
-#include <tactoid/neighbors/neighbor_search.hpp>
 
 namespace tactoid {
 
@@ -22,14 +21,10 @@ template <Kernel K>
 /// Spacing of the particles around each one, m, without the cells, which a fluid draws out: the distance of the 3^D − 1 nearest ones over
 /// √D, as in a square or cubic lattice. Larger at a surface, and where particles lie denser in one direction than in another.
 template <int D>
-[[nodiscard]] std::vector<double> neighbor_spacings(const PointCloud<D>& cloud) {
-  constexpr std::size_t around = D == 1 ? 2 : D == 2 ? 8 : 26;
-  const NeighborSearch<D> search(cloud.positions, cloud.period);
-  std::vector<double> spacing(cloud.size());
-  parallel_for(cloud.size(), [&](std::size_t i) {
-    spacing[i] = search.nearest(cloud.positions[i], around + 1).back().distance / std::sqrt(static_cast<double>(D));  // itself included
-  });
-  return spacing;
-}
+[[nodiscard]] std::vector<double> neighbor_spacings(const PointCloud<D>& cloud);
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/kernel/support.ipp>
+#endif

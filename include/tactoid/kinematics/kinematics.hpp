@@ -145,6 +145,15 @@ template <class T>
   return C(0, 0) + C(1, 1) + C(2, 2);
 }
 
+/// Upper bound of the largest eigenvalue of a symmetric tensor, exact where two eigenvalues are equal:
+/// t/3 + √(2/3 (A:A − t²/3)), t = tr A.
+template <class T>
+[[nodiscard]] T largest_eigenvalue_bound(const Tensor<T>& A) {
+  using std::sqrt, std::abs;
+  const T mean = first_invariant(A) * T(1.0 / 3.0);
+  return mean + sqrt(abs(contract(A, A) - mean * mean * T(3.0)) * T(2.0 / 3.0));
+}
+
 /// I₂ = ½ [(tr C)² − tr C²] = the sum of the principal minors; for a symmetric C.
 template <class T>
 [[nodiscard]] inline T second_invariant(const Tensor<T>& C) {

@@ -69,39 +69,16 @@ class NeighborSearch {
 
   /// All points with distance < `radius` from `x`, sorted by index. `radius` in m, >= 0, and at most half a period:
   /// throws ParameterError.
-  void within(const Point<D>& x, double radius, std::vector<Neighbor>& out) const {
-    out.clear();
-    collect(x, radius, [&](Index i, double distance) { out.push_back({i, distance}); });
-    std::sort(out.begin(), out.end(), [](const Neighbor& a, const Neighbor& b) { return a.index < b.index; });
-    const auto same = [](const Neighbor& a, const Neighbor& b) { return a.index == b.index; };
-    out.erase(std::unique(out.begin(), out.end(), same), out.end());
-  }
+  void within(const Point<D>& x, double radius, std::vector<Neighbor>& out) const;
 
   /// The same without the distances.
-  void within(const Point<D>& x, double radius, std::vector<Index>& out) const {
-    out.clear();
-    collect(x, radius, [&](Index i, double) { out.push_back(i); });
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-  }
+  void within(const Point<D>& x, double radius, std::vector<Index>& out) const;
 
   /// The point nearest to `x`; of equally near ones that with the least index. Throws GeometryError if there is none.
-  [[nodiscard]] Index nearest(const Point<D>& x) const {
-    if (size() == 0) throw GeometryError("Neighbour search: there is no nearest point in an empty set.");
-    Nearest result(1);
-    search_images(x, result, std::numeric_limits<double>::infinity());
-    return result.found.front().second;
-  }
+  [[nodiscard]] Index nearest(const Point<D>& x) const;
 
   /// The `count` points nearest to `x` (all, if there are fewer), sorted by distance, then by index.
-  [[nodiscard]] std::vector<Neighbor> nearest(const Point<D>& x, std::size_t count) const {
-    std::vector<Neighbor> out;
-    if (size() == 0 || count == 0) return out;
-    Nearest result(std::min(count, size()));
-    search_images(x, result, std::numeric_limits<double>::infinity());
-    for (const auto& [square, index] : result.found) out.push_back({index, std::sqrt(square)});
-    return out;
-  }
+  [[nodiscard]] std::vector<Neighbor> nearest(const Point<D>& x, std::size_t count) const;
 
  private:
   struct Data;
@@ -168,12 +145,7 @@ class NeighborSearch {
   }
 
   // Shortest way around, as PointCloud::difference.
-  [[nodiscard]] double distance(const Point<D>& a, const Point<D>& b) const {
-    Point<D> d = b - a;
-    for (int k = 0; k < D; ++k)
-      if (period_[k] > 0.0) d[k] -= period_[k] * std::round(d[k] / period_[k]);
-    return d.norm();
-  }
+  [[nodiscard]] double distance(const Point<D>& a, const Point<D>& b) const;
 
   template <class Visit>
   void collect(const Point<D>& x, double radius, const Visit& visit) const {
@@ -221,3 +193,7 @@ class NeighborSearch {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/neighbors/neighbor_search.ipp>
+#endif

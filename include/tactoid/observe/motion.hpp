@@ -20,19 +20,8 @@ struct Motion {
 /// From lumped masses, the reference positions of the particles, and the unknowns: values at the particles, or
 /// coefficients (the sums are those of the fields, since shape functions reproduce the position). Sums run in the
 /// order of the particles.
-[[nodiscard]] inline Motion motion(std::span<const double> mass, std::span<const Vector4> reference,
-                                   std::span<const Vector4> displacement, std::span<const Vector4> velocity) {
-  Motion m;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    const Vector3 x = reference[i].head<3>() + displacement[i].head<3>(), p = mass[i] * velocity[i].head<3>();
-    m.mass += mass[i];
-    m.momentum += p;
-    m.angular_momentum += Vector3(x[1] * p[2] - x[2] * p[1], x[2] * p[0] - x[0] * p[2], x[0] * p[1] - x[1] * p[0]);
-    m.center_of_mass += mass[i] * x;
-  }
-  m.center_of_mass /= m.mass;
-  return m;
-}
+[[nodiscard]] Motion motion(std::span<const double> mass, std::span<const Vector4> reference,
+                            std::span<const Vector4> displacement, std::span<const Vector4> velocity);
 
 /// Of a value-based body, from the values at its particles.
 [[nodiscard]] inline Motion motion(const ParticleFields& body) {
@@ -54,3 +43,7 @@ template <std::size_t N, class S>
 }
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/observe/motion.ipp>
+#endif

@@ -34,42 +34,16 @@ class Progress {
   ~Progress() { finish(); }
 
   /// The run stands at simulated time `time` (s), after `steps` steps since its beginning.
-  void update(double time, std::uint64_t steps) {
-    if (!terminal_ || finished_) return;
-    const Clock::time_point now = Clock::now();
-    if (shown_ && now - last_ < std::chrono::milliseconds(200) && time < total_) return;
-    last_ = now;
-    shown_ = true;
-    show(line(time, steps, std::chrono::duration<double>(now - begun_).count()));
-  }
+  void update(double time, std::uint64_t steps);
 
   /// Leaves the line as it stands and goes to the next one.
-  void finish() {
-    if (terminal_ && shown_ && !finished_) {
-      std::fputc('\n', stream_);
-      std::fflush(stream_);
-    }
-    finished_ = true;
-  }
+  void finish();
 
   /// The text of the line after `seconds` of computing.
-  [[nodiscard]] std::string line(double time, std::uint64_t steps, double seconds) const {
-    const double fraction = total_ > start_ ? std::clamp((time - start_) / (total_ - start_), 0.0, 1.0) : 1.0;
-    const double rate = seconds > 0.0 ? static_cast<double>(steps) / seconds : 0.0;
-    std::string text =
-        fmt::format("{:5.1f} %  {} of {}  {:.{}f} steps/s", 100.0 * fraction, format_quantity(time, Quantity::time, 4),
-                    format_quantity(total_, Quantity::time, 4), rate, rate < 10.0 ? 1 : 0);
-    if (fraction > 0.0 && seconds > 0.0) text += "  " + duration(seconds * (1.0 - fraction) / fraction) + " to go";
-    return text;
-  }
+  [[nodiscard]] std::string line(double time, std::uint64_t steps, double seconds) const;
 
  private:
-  static std::string duration(double seconds) {
-    if (!(seconds < 360000.0)) return "> 100 h";
-    const auto whole = static_cast<int>(std::lround(seconds));
-    return whole >= 3600 ? fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
-                         : fmt::format("{}:{:02}", whole / 60, whole % 60);
-  }
+  static std::string duration(double seconds);
   void show(const std::string& text) {
     fmt::print(stream_, "\r{:<{}}", text, width_);
     width_ = text.size();
@@ -84,3 +58,7 @@ class Progress {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/output/progress.ipp>
+#endif

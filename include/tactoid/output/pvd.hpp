@@ -21,32 +21,11 @@ class PvdSeries {
   explicit PvdSeries(std::filesystem::path path) : path_(std::move(path)) {}
 
   /// Goes on with a series that is there: the grids up to this time (s) stay in it.
-  void keep_until(double time) {
-    std::ifstream file(path_);
-    const std::string mark = "<DataSet timestep=\"";
-    for (std::string line; std::getline(file, line);) {
-      if (!line.starts_with(mark)) continue;
-      double at = 0.0;
-      if (std::from_chars(line.data() + mark.size(), line.data() + line.size(), at).ec != std::errc{} || at > time) continue;
-      entries_ += line + '\n';
-      (void)part_number(at);
-    }
-  }
+  void keep_until(double time);
 
   /// Adds the grid `file`, a path relative to the folder of the series, at `time` (s). Grids of the same time with
   /// different names of `part` are the parts of one picture. Throws FileError.
-  void add(double time, std::string_view file, std::string_view part = "") {
-    const std::size_t before = entries_.size();
-    entries_ += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", time, part_number(time),
-                            escaped(part), escaped(file));
-    try {
-      write_file(path_, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
-                            entries_ + "</Collection>\n</VTKFile>\n");
-    } catch (...) {
-      entries_.resize(before);
-      throw;
-    }
-  }
+  void add(double time, std::string_view file, std::string_view part = "");
 
  private:
   int part_number(double time) {
@@ -54,20 +33,7 @@ class PvdSeries {
     last_time_ = time;
     return part_;
   }
-  static std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-      if (c == '&')
-        result += "&amp;";
-      else if (c == '<')
-        result += "&lt;";
-      else if (c == '"')
-        result += "&quot;";
-      else
-        result += c;
-    }
-    return result;
-  }
+  static std::string escaped(std::string_view text);
 
   std::filesystem::path path_;
   std::string entries_;
@@ -76,3 +42,7 @@ class PvdSeries {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/output/pvd.ipp>
+#endif

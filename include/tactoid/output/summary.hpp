@@ -35,19 +35,7 @@ class Summary {
   }
 
   /// The object as text; lines after the first begin with `indent` blanks.
-  [[nodiscard]] std::string json(int indent = 0) const {
-    if (members_.empty()) return "{}";
-    const std::string margin(static_cast<std::size_t>(indent), ' ');
-    std::string text = "{";
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-      text += fmt::format("{}\n{}  {}: ", i == 0 ? "" : ",", margin, to_json(members_[i].first));
-      for (const char c : members_[i].second) {  // nested objects move with their margin
-        text += c;
-        if (c == '\n') text += margin + "  ";
-      }
-    }
-    return text + '\n' + margin + '}';
-  }
+  [[nodiscard]] std::string json(int indent = 0) const;
 
   /// Writes the file, whole or not at all. Throws FileError.
   void write(const std::filesystem::path& path) const { write_file(path, json() + '\n'); }
@@ -65,23 +53,7 @@ class Summary {
   }
   static std::string to_json(const char* text) { return to_json(std::string_view(text)); }
   static std::string to_json(const std::string& text) { return to_json(std::string_view(text)); }
-  static std::string to_json(std::string_view text) {
-    std::string result = "\"";
-    while (!text.empty()) {
-      const std::size_t length = utf8_sequence_length(text);
-      const auto byte = static_cast<unsigned char>(text[0]);
-      if (length == 0)
-        result += "\xEF\xBF\xBD";
-      else if (text[0] == '"' || text[0] == '\\')
-        result += {'\\', text[0]};
-      else if (byte < 0x20)
-        result += fmt::format("\\u{:04x}", byte);
-      else
-        result += text.substr(0, length);
-      text.remove_prefix(length == 0 ? 1 : length);
-    }
-    return result + '"';
-  }
+  static std::string to_json(std::string_view text);
   template <class T>
   static std::string to_json(const std::vector<T>& values) {
     std::string result = "[";
@@ -93,3 +65,7 @@ class Summary {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/output/summary.ipp>
+#endif

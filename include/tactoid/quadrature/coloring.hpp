@@ -16,45 +16,7 @@ namespace tactoid {
 /// any number of threads. Points must be sorted by region. Among the colours allowed for a chunk the least used
 /// one is taken, which keeps the threads evenly loaded. `points_per_chunk` = 0 chooses: large chunks, whose points
 /// share most of their particles, where there are enough of them to keep several threads busy.
-inline void color_chunks(PointTable& table, std::size_t points_per_chunk) {
-  if (points_per_chunk == 0) points_per_chunk = std::clamp<std::size_t>(table.points() / 64, 64, 512);
-  points_per_chunk = std::max<std::size_t>(8, points_per_chunk / 8 * 8);  // whole blocks of lanes
-
-  std::vector<PointChunk> chunks;
-  for (std::size_t q = 0; q < table.points();) {
-    std::size_t end = q;
-    while (end < table.points() && end - q < points_per_chunk && table.region[end] == table.region[q]) ++end;
-    chunks.push_back({q, end, table.region[q]});
-    q = end;
-  }
-  constexpr std::size_t max_colors = 256;
-  std::vector<std::bitset<max_colors>> used(table.particles);  // colours of the chunks that touch each particle
-  std::vector<std::size_t> color(chunks.size());
-  std::vector<std::size_t> count(max_colors, 0);
-  std::size_t colors = 0;
-  for (std::size_t c = 0; c < chunks.size(); ++c) {
-    std::bitset<max_colors> taken;
-    for (std::size_t e = table.offsets[chunks[c].begin]; e < table.offsets[chunks[c].end]; ++e)
-      taken |= used[table.entries[e].particle];
-    std::size_t best = max_colors;
-    for (std::size_t k = 0; k < colors; ++k)
-      if (!taken[k] && (best == max_colors || count[k] < count[best])) best = k;
-    if (best == max_colors && colors < max_colors) best = colors++;
-    if (best == max_colors)
-      throw GeometryError("The points cannot be coloured with 256 colours: the supports of the kernel are too large.");
-    color[c] = best;
-    ++count[best];
-    for (std::size_t e = table.offsets[chunks[c].begin]; e < table.offsets[chunks[c].end]; ++e)
-      used[table.entries[e].particle].set(best);
-  }
-  table.chunks.clear();
-  table.color_offsets.assign(1, 0);
-  for (std::size_t k = 0; k < colors; ++k) {
-    for (std::size_t c = 0; c < chunks.size(); ++c)
-      if (color[c] == k) table.chunks.push_back(chunks[c]);
-    table.color_offsets.push_back(table.chunks.size());
-  }
-}
+void color_chunks(PointTable& table, std::size_t points_per_chunk);
 
 /// Calls body(chunk, number of the chunk) for every chunk, colour after colour, on all threads.
 template <class Body>
@@ -67,3 +29,7 @@ void for_each_chunk(const PointTable& table, const Body& body) {
 }
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/quadrature/coloring.ipp>
+#endif

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -51,16 +53,7 @@ struct NodalCentroids {
   std::size_t points_per_chunk = 0;  ///< points that one thread adds at a time; 0: by the size of the body
 
   /// Throws ParameterError for a value that is not in its range.
-  void validate() const {
-    require_non_negative("NodalCentroids.solid_ratio", solid_ratio);
-    if (!(stabilization_reach > 1.0) || !std::isfinite(stabilization_reach))
-      reject("NodalCentroids.stabilization_reach", stabilization_reach, "", "above 1");
-    require_non_negative("NodalCentroids.fluid_modulus", fluid_modulus, "Pa");
-    require_non_negative("NodalCentroids.solid_damping_time", solid_damping_time, "s");
-    require_non_negative("NodalCentroids.fluid_viscosity", fluid_viscosity, "Pa s");
-    require_positive("NodalCentroids.condition_limit", condition_limit);
-    require_non_negative("NodalCentroids.consistency_tolerance", consistency_tolerance);
-  }
+  void validate() const;
 
   /// Of a region whose law has this shear modulus, Pa; 0 is a fluid.
   [[nodiscard]] Stabilization stabilization(double shear_modulus) const {
@@ -77,7 +70,7 @@ struct NodalCentroids {
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
       return std::pair(a.region, a.particle) < std::pair(b.region, b.particle);
     });
-    return table_of(cloud, kernel, cells, longest_edges(cloud), false);
+    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, longest_edges(cloud), false);
   }
 
   /// The table of a cloud that has moved, with the points and the volumes that moved with it: `cells`, sorted by region. Only
@@ -88,63 +81,35 @@ struct NodalCentroids {
   [[nodiscard]] PointTable build_moved(const PointCloud<K::dimension>& cloud, const K& kernel,
                                        const std::vector<NodalCell<K::dimension>>& cells) const {
     if (!cloud.period.isZero()) throw ParameterError("NodalCentroids.build_moved: a periodic cloud keeps its reference.");
-    return table_of(cloud, kernel, cells, neighbor_spacings(cloud), true);
+    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, neighbor_spacings(cloud), true);
   }
 
  private:
-  template <Kernel K>
-  [[nodiscard]] PointTable table_of(const PointCloud<K::dimension>& cloud, const K& kernel, const std::vector<NodalCell<K::dimension>>& cells,
-                                    const std::vector<double>& spacing, bool moved) const {
-    constexpr int D = K::dimension;
-    std::vector<Point<D>> centroids(cells.size());
-    for (std::size_t q = 0; q < cells.size(); ++q) centroids[q] = cells[q].centroid;
-    std::vector<double> supports = spacing;
-    for (double& support : supports) support *= kernel.support;
+  /// What a kernel makes of the particles around a point.
+  template <int D>
+  struct RowOfPoint {
+    std::vector<Point<D>> gradient;  // value-based, 1/m
+    std::vector<double> mass_share;  // linear shape functions
+    std::vector<double> weight;      // of the window
+    double condition = 0.0;          // of the moment matrix
+  };
+  template <int D>
+  using RowsOf = std::function<void(std::span<const KernelNeighbor<D>>, RowOfPoint<D>&)>;
 
-    PointTable table = empty_table(cloud);
-    std::vector<double> weights;
-    const NeighborTable neighbors = neighbor_table(cloud, centroids, supports);
-    lay_out_rows(table, neighbors);
-    weights.assign(table.pairs(), 0.0);
-    table.mass_shares.assign(table.pairs(), 0.0);
-    for (const NodalCell<D>& cell : cells) {
-      table.volume.push_back(cell.volume);
-      table.region.push_back(cell.region);
-      table.owner.push_back(cell.particle);
-      table.position.push_back(pad(cell.centroid).template head<3>());
-    }
-    parallel_for(cells.size(), [&](std::size_t q) {
-      std::vector<KernelNeighbor<D>> near;
-      std::vector<Point<D>> gradient;
-      std::vector<double> shares;
-      const auto row = neighbors.row(q);
-      for (Index i : row) near.push_back({cloud.difference(centroids[q], cloud.positions[i]), supports[i], 1.0});
-      const double condition = kernel.direct_gradient(near, gradient);
-      check_condition(q, table.position[q], row.size(), condition, condition_limit);
-      detail::Reproducing<D, 1, typename K::Window, false>(near).values(shares);
-      for (std::size_t k = 0; k < row.size(); ++k) {
-        const std::size_t e = table.offsets[q] + k;
-        for (int d = 0; d < D; ++d) table.entries[e].gradient[d] = gradient[k][d];
-        table.mass_shares[e] = shares[k];
-        weights[e] = K::Window::value(near[k].offset.norm() / near[k].support);
-      }
-    });
-    color_chunks(table, points_per_chunk);
-    if (consistency_tolerance > 0.0) {
-      const std::vector<Point<D>> normals = boundary_normal_integrals(cloud);
-      Field boundary;
-      for (const Point<D>& b : normals) boundary.push_back(pad(b));
-      if (cloud.axisymmetric) take_off_hoops(table, boundary);
-      if (moved) fit_boundary(table, normals, boundary);
-      make_consistent(table, weights, boundary, consistency_tolerance);
-    }
-    if (cloud.axisymmetric)
-      for (std::size_t q = 0; q < table.points(); ++q)
-        for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
-          table.entries[e].gradient[2] = table.mass_shares[e] / table.position[q][0];
-    weigh_stabilization(table, cloud, spacing);
-    return table;
+  template <Kernel K>
+  [[nodiscard]] static RowsOf<K::dimension> rows_of(const K& kernel) {
+    constexpr int D = K::dimension;
+    return [kernel](std::span<const KernelNeighbor<D>> near, RowOfPoint<D>& row) {
+      row.condition = kernel.direct_gradient(near, row.gradient);
+      detail::Reproducing<D, 1, typename K::Window, false>(near).values(row.mass_share);
+      row.weight.clear();
+      for (const KernelNeighbor<D>& n : near) row.weight.push_back(K::Window::value(n.offset.norm() / n.support));
+    };
   }
+
+  template <int D>
+  [[nodiscard]] PointTable table_of(const PointCloud<D>& cloud, double support, const RowsOf<D>& rows_of_points,
+                                    const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved) const;
 
   /// What is left of ∮ N_I n dA for the gradients in a meridian section, where div(φ e_R) = ∂φ/∂R + φ/R:
   ///   Σ_q V_q G_qI = b_I − Σ_q V_q φ_I(X_q)/R_q e_R.
@@ -157,38 +122,11 @@ struct NodalCentroids {
 
   /// Weights of the stabilisation; its pairs move to the front of each row.
   template <int D>
-  void weigh_stabilization(PointTable& table, const PointCloud<D>& cloud, const std::vector<double>& spacing) const {
-    table.stabilization_scale.assign(table.points(), 0.0);
-    table.bond_offsets.assign(1, 0);
-    std::vector<std::pair<TableEntry, double>> bonded, others;  // with their shares of the mass
-    for (std::size_t q = 0; q < table.points(); ++q) {
-      const Index owner = table.owner[q];
-      std::size_t e = table.offsets[q];
-      double moment = 0.0;
-      bonded.clear(), others.clear();
-      for (; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) {
-        const Index particle = table.entries[e].particle;
-        const double distance = cloud.difference(cloud.positions[owner], cloud.positions[particle]).norm();
-        const double x = distance / (stabilization_reach * spacing[particle]);
-        const bool bond = particle != owner && x < 1.0;
-        (bond ? bonded : others).emplace_back(table.entries[e], table.mass_shares[e]);
-        if (!bond) continue;
-        table.bond_weights.push_back(static_cast<float>(1.0 - x * x));
-        moment += static_cast<double>(table.bond_weights.back()) * distance * distance;
-      }
-      if (bonded.size() % 2 == 1) table.bond_weights.push_back(0.0F);
-      table.bond_offsets.push_back(table.bond_weights.size());
-      const bool padded = e < table.offsets[q + 1];
-      e = table.offsets[q];
-      for (const auto* part : {&bonded, &others})
-        for (const auto& [entry, share] : *part) {
-          table.entries[e] = entry;
-          table.mass_shares[e++] = share;
-        }
-      if (padded) table.entries[e].particle = table.entries[table.offsets[q]].particle;
-      table.stabilization_scale[q] = moment > 0.0 ? table.volume[q] * D / moment : 0.0;
-    }
-  }
+  void weigh_stabilization(PointTable& table, const PointCloud<D>& cloud, const std::vector<double>& spacing) const;
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/quadrature/nodal_centroids.ipp>
+#endif

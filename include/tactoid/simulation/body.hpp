@@ -27,38 +27,12 @@
 #include <tactoid/quadrature/particle_values.hpp>
 #include <tactoid/simulation/decomposition.hpp>
 #include <tactoid/simulation/earlier_configuration.hpp>
+#include <tactoid/simulation/force_loop.hpp>
 #include <tactoid/simulation/redistribution.hpp>
 #include <tactoid/simulation/region_laws.hpp>
 #include <tactoid/simulation/row_operations.hpp>
 
 namespace tactoid {
-
-/// A body without a director field.
-struct NoDirector {
-  void validate() const {}  ///< nothing can be wrong
-};
-
-/// Energies and powers of a body at one instant, in J and W.
-struct BodyTotals {
-  double strain_energy = 0.0;         ///< of the laws
-  double stabilization_energy = 0.0;  ///< of the quadrature's stabilisation
-  double dissipated_power = 0.0;      ///< of the laws, and of the damping of the stabilisation
-  double active_power = 0.0;          ///< given to the motion by stresses without an energy
-  /// Sums of the parts: chunks of one body, or several bodies.
-  BodyTotals& operator+=(const BodyTotals& other) {
-    strain_energy += other.strain_energy;
-    stabilization_energy += other.stabilization_energy;
-    dissipated_power += other.dissipated_power;
-    active_power += other.active_power;
-    return *this;
-  }
-};
-
-/// Cauchy stress and volume ratio at a quadrature point.
-struct PointSample {
-  Tensor3 cauchy;  ///< Cauchy stress σ, Pa
-  double J = 1.0;  ///< det F
-};
 
 /// A deformable body: a point cloud, the kernel and the quadrature that sample it, a law for each of its regions,
 /// and, where a law needs one, a director field. Holds the state that an integrator advances.
@@ -309,20 +283,20 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     for_each_region([&](const auto& region, Index) { rates = rates || needs_rate(region); });
     if (rates) pack_motion();
     if (!earlier_.empty()) relative_ = displacement_in_table();
+    const Loop loop = force_loop();
     for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
-      chunk_totals_[c] = {};
-      chunk_stretch_[c] = 0.0;
-      chunk_failure_[c] = no_failure;
       visit(chunk.region, [&](auto& region) {
-        if (needs_rate(region))
-          pass<true>(region, chunk, c, time_step, advance);
+        if constexpr (Loop::template always_with_rates<std::decay_t<decltype(region)>>)
+          chunks_[c] = loop.template pass<true>(region, chunk, time_step, advance);
+        else if (needs_rate(region))
+          chunks_[c] = loop.template pass<true>(region, chunk, time_step, advance);
         else
-          pass<false>(region, chunk, c, time_step, advance);
+          chunks_[c] = loop.template pass<false>(region, chunk, time_step, advance);
       });
     });
     if (share_) gather_chunks();
     BodyTotals totals;
-    for (const BodyTotals& part : chunk_totals_) totals += part;
+    for (const ChunkResult& part : chunks_) totals += part.totals;
     return totals;
   }
 
@@ -334,7 +308,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// The first point whose volume ratio is not positive (or is NaN) after add_internal_forces; points() if none.
   [[nodiscard]] std::size_t failed_point() const {
     std::size_t failed = no_failure;
-    for (std::size_t q : chunk_failure_) failed = std::min(failed, q);
+    for (const ChunkResult& chunk : chunks_) failed = std::min(failed, chunk.failure);
     return failed == no_failure ? table_.points() : failed;
   }
 
@@ -344,7 +318,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   [[nodiscard]] std::vector<double> region_wave_numbers() const {
     std::vector<double> largest(sizeof...(Ms), 0.0);
     for (std::size_t c = 0; c < table_.chunks.size(); ++c)
-      largest[table_.chunks[c].region] = std::max(largest[table_.chunks[c].region], chunk_stretch_[c]);
+      largest[table_.chunks[c].region] = std::max(largest[table_.chunks[c].region], chunks_[c].stretch);
     return largest;
   }
 
@@ -360,31 +334,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   [[nodiscard]] std::vector<PointSample> sample_points() {
     std::vector<PointSample> samples(table_.points());
     pack_motion();
-    for_each_region([&](auto& region, Index) {
-      using Region = std::decay_t<decltype(region)>;
-      parallel_for(region.end - region.begin, [&](std::size_t i) {
-        const std::size_t q = region.begin + i;
-        if (i % std::size_t(Region::width) != 0) return;
-        const std::size_t last = std::min(region.end, q + std::size_t(Region::width));
-        if (is_elsewhere(q, last)) return;
-        BlockGradients<Region::width> gradients;
-        gather_block<true>(q, last, gradients);
-        auto state = block_state<true, typename Region::Scalar>(q, last, gradients);
-        if (!earlier_.empty()) refer_to_first(state, earlier_gradients<typename Region::Scalar>(q, last));
-        auto history = region.histories[region.block(q)];
-        state.time_step = 0.0;
-        const auto response = respond(region.law(q), state, history);
-        for (std::size_t p = q; p < last; ++p) {
-          const int l = static_cast<int>(p - q);
-          Tensor3 F, P;
-          for (int a = 0; a < 9; ++a) {
-            F(a % 3, a / 3) = lane(state.deformation_gradient(a % 3, a / 3), l);
-            P(a % 3, a / 3) = lane(response.stress(a % 3, a / 3), l);
-          }
-          samples[p] = {cauchy_from_piola(P, F), determinant(F)};
-        }
-      });
-    });
+    const Loop loop = force_loop();
+    for_each_region([&](auto& region, Index) { loop.sample(region, samples); });
     if (share_) gather_at_points<10>([&](std::size_t q, auto at) {
       for (int a = 0; a < 9; ++a) at(a, samples[q].cauchy(a % 3, a / 3));
       at(9, samples[q].J);
@@ -450,7 +401,11 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     archive("displacement", displacement);
     archive("velocity", velocity);
     archive("force", force);
-    archive("chunk_stretch", chunk_stretch_);
+    std::vector<double> stretch(chunks_.size());
+    for (std::size_t c = 0; c < chunks_.size(); ++c) stretch[c] = chunks_[c].stretch;
+    archive("chunk_stretch", stretch);
+    if constexpr (Archive::restoring)
+      for (std::size_t c = 0; c < chunks_.size(); ++c) chunks_[c].stretch = stretch[c];
     if constexpr (has_director) {
       archive("director", director);
       archive("director_flux", director_flux);
@@ -473,14 +428,13 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   }
 
  private:
-  static constexpr std::size_t no_failure = std::numeric_limits<std::size_t>::max();
+  using Loop = ForceLoop<dimension, Director, Entry>;
+  static constexpr std::size_t no_failure = ChunkResult{}.failure;
 
   /// Everything that depends on the rows of the table and not on their values.
   void follow_table() {
     table_.mass_shares = std::vector<double>();  // an assignment of {} would keep the memory
-    chunk_totals_.resize(table_.chunks.size());
-    chunk_stretch_.assign(table_.chunks.size(), 0.0);
-    chunk_failure_.assign(table_.chunks.size(), no_failure);
+    chunks_.assign(table_.chunks.size(), {});
     point_scale_ = wave_numbers();
     if constexpr (std::is_same_v<Entry, SingleTableEntry>) table_.use_single_precision();
     longest_row_ = 0;
@@ -656,15 +610,6 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     }
   }
 
-  /// F₀ at the points of a block; lanes beyond its last point are at rest.
-  template <class T>
-  [[nodiscard]] Tensor<T> earlier_gradients(std::size_t begin, std::size_t end) const {
-    Tensor<T> F = Tensor<T>::Identity();
-    for (std::size_t q = begin; q < end; ++q)
-      for (int a = 0; a < 9; ++a) set_lane(F(a % 3, a / 3), static_cast<int>(q - begin), earlier_.gradient[q](a % 3, a / 3));
-    return F;
-  }
-
   template <class F>
   void visit(Index region, const F& f) {
     std::apply([&](auto&... law) { Index r = 0; ((r++ == region ? f(law) : void()), ...); }, laws_);
@@ -740,14 +685,19 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
 
   template <class Region>
   [[nodiscard]] static bool needs_rate(const Region& region) {
-    return uses_rate<typename Region::Law> || has_director || region.stabilization.modulus * region.stabilization.damping_time > 0.0;
+    return Loop::template always_with_rates<Region> || region.stabilization.modulus * region.stabilization.damping_time > 0.0;
   }
 
-  template <bool Rate>
-  [[nodiscard]] const rows::MotionOf<Rate>* motion() const {
-    if constexpr (Rate) return motion_.data();
-    else return earlier_.empty() ? displacement.data() : relative_.data();
+  /// To be made after pack_motion() and relative_, which it refers to (ForceLoop::sample needs the first alone).
+  [[nodiscard]] Loop force_loop() {
+    Loop loop{.table = table_, .earlier = earlier_, .displacement = earlier_.empty() ? displacement.data() : relative_.data(),
+              .motion = motion_.data(), .director = director.data(), .evaluated = share_ ? share_->evaluated.data() : nullptr,
+              .point_scale = point_scale_.data(), .longest_row = longest_row_, .velocity_lag = velocity_lag, .force = force.data(),
+              .director_flux = director_flux.data(), .point_rate = point_rate_.data(), .point_volume_ratio = point_volume_ratio_.data()};
+    return loop;
   }
+
+  /// Displacement and velocity, packed for the force loop.
   void pack_motion() {
     motion_.resize(size());
     const bool updated = !earlier_.empty();
@@ -758,163 +708,25 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     });
   }
 
-  /// Gradients of the fields at the points of a block, which has as many as a law has lanes.
-  template <int W>
-  struct BlockGradients {
-    std::span<const TableEntry> row[W];  // in double precision
-    rows::Gradient motion[W], rate[W], director[W];
-  };
-
-  template <bool Rate, int W>
-  void gather_block(std::size_t begin, std::size_t end, BlockGradients<W>& g) const {
-    for (std::size_t q = begin; q < end; ++q) {
-      const std::size_t l = q - begin;
-      const auto stored = table_.template stored_row<Entry>(q);
-      if constexpr (std::is_same_v<Entry, SingleTableEntry>) {
-        thread_local std::vector<TableEntry> unpacked;
-        unpacked.resize(std::max(unpacked.size(), W * longest_row_));
-        g.row[l] = rows::unpack(stored, unpacked.data() + l * longest_row_);
-      } else {
-        g.row[l] = stored;
-      }
-      const auto row = g.row[l];
-      if constexpr (has_director) rows::gather(row, motion_.data(), director.data(), g.motion[l], g.rate[l], g.director[l]);
-      else if constexpr (Rate) rows::gather(row, motion_.data(), g.motion[l], g.rate[l]);
-      else rows::gather(row, motion<false>(), g.motion[l]);
-      if constexpr (dimension == 2)
-        if (table_.axisymmetric) {
-          rows::turn_around_axis(g.motion[l]);
-          rows::turn_around_axis(g.rate[l]);
-          rows::turn_around_axis(g.director[l]);
-        }
-    }
-  }
-
-  /// What the laws are told about a block. Lanes beyond its last point are at rest.
-  template <bool Rate, class T, int W>
-  PointState<T> block_state(std::size_t begin, std::size_t end, const BlockGradients<W>& g) const {
-    PointState<T> state;
-    rows::to_lanes(g.motion, state.deformation_gradient);
-    for (int i = 0; i < 3; ++i) state.deformation_gradient(i, i) += T(1.0);
-    if constexpr (Rate) rows::to_lanes(g.rate, state.deformation_rate);
-    if constexpr (has_director) {
-      rows::to_lanes(g.director, state.director_gradient);
-      for (std::size_t q = begin; q < end; ++q)
-        for (int i = 0; i < 3; ++i) set_lane(state.director(i), static_cast<int>(q - begin), director[table_.owner[q]][i]);
-    }
-    return state;
-  }
-
-  /// One chunk of one region: gather, law, scatter, block by block.
-  template <bool Rate, class Region>
-  void pass(Region& region, const PointChunk& chunk, std::size_t c, double time_step, bool advance) {
-    using T = typename Region::Scalar;
-    constexpr std::size_t W = Region::width;
-    const double kappa = table_.stabilization_scale.empty() ? 0.0 : region.stabilization.modulus;
-    const double tau = region.stabilization.damping_time;
-    thread_local std::vector<Quad> held;  // forces of the pairs of a row, until they are scattered
-    held.resize(std::max(held.size(), longest_row_));
-    BodyTotals totals;
-    double stretch = 0.0;
-    for (std::size_t first = chunk.begin; first < chunk.end; first += W) {
-      const std::size_t last = std::min(chunk.end, first + W);
-      if (is_elsewhere(first, last)) continue;
-      BlockGradients<W> gradients;
-      gather_block<Rate>(first, last, gradients);
-      PointState<T> state = block_state<Rate, T>(first, last, gradients);
-      state.time_step = time_step;
-      auto history = region.histories[region.block(first)];
-      Tensor<T> earlier;
-      const bool updated = !earlier_.empty();
-      if (updated) {
-        earlier = earlier_gradients<T>(first, last);
-        refer_to_first(state, earlier);
-      }
-      Response<T> response = respond(region.law(first), state, history);
-      if (updated) {
-        response.stress = (response.stress * earlier.transpose()).eval();
-        state = block_state<Rate, T>(first, last, gradients);
-      }
-      const Inversion<T> F = invert(state.deformation_gradient);
-      if (advance) region.advanced[region.block(first)] = history;
-      const Tensor<T> inverse_C = F.inverse * F.inverse.transpose();
-      const T bound = largest_eigenvalue_bound<T>(inverse_C);
-
-      double volume[W] = {}, volume_in_table[W] = {};
-      for (std::size_t q = first; q < last; ++q) volume[q - first] = point_volume(q), volume_in_table[q - first] = table_.volume[q];
-      rows::Gradient flux[W], flux_h[W];
-      rows::to_points(response.stress, volume, flux);
-      if constexpr (has_director) {
-        const Tensor<T> middle = state.deformation_gradient - state.deformation_rate * T(velocity_lag * time_step);
-        const Tensor<T> A = Director::rate_operator(velocity_gradient(state.deformation_rate, inverse(middle)));
-        const Tensor<T> diffusion = state.director_gradient * inverse_C * F.determinant;
-        rows::to_points(diffusion, volume_in_table, flux_h);
-        for (std::size_t q = first; q < last; ++q) {
-          for (int a = 0; a < 9; ++a) point_rate_[q](a % 3, a / 3) = lane(A(a % 3, a / 3), int(q - first));
-          point_volume_ratio_[q] = lane(F.determinant, int(q - first)) * (volume_in_table[q - first] / volume[q - first]);
-        }
-      }
-      for (std::size_t q = first; q < last; ++q) {
-        const int l = static_cast<int>(q - first);
-        const double V = volume[l], J = lane(F.determinant, l);
-        if (!(J > 0.0) || !std::isfinite(J)) chunk_failure_[c] = std::min(chunk_failure_[c], q);
-        stretch = std::max(stretch, point_scale_[q] * lane(bound, l));
-        totals.strain_energy += V * lane(response.energy, l);
-        totals.dissipated_power += V * lane(response.dissipated_power, l);
-        totals.active_power += V * lane(response.active_power, l);
-        restrict_to_dimension(flux[l]);
-        const auto row = gradients.row[l];
-        if (q + W < chunk.end) rows::prefetch(table_.template stored_row<Entry>(q + W));
-        std::size_t bonds = 0;
-        if (kappa > 0.0) {
-          const rows::StabilizedPoint point{row, table_.bonds(q), table_.owner[q], kappa * table_.stabilization_scale[q], tau};
-          const auto power = stabilize<Rate>(point, gradients.motion[l], gradients.rate[l], held.data(), flux[l]);
-          totals.stabilization_energy += power.energy;
-          totals.dissipated_power += power.dissipated;
-          bonds = point.weights.size();
-        }
-        const auto forces_of_bonds = std::span<const Quad>(held).first(bonds);
-        if constexpr (has_director) {
-          if constexpr (dimension == 2)
-            if (table_.axisymmetric) rows::turn_back(flux_h[l]);
-          rows::scatter(row, flux[l], forces_of_bonds, force.data(), flux_h[l], director_flux.data());
-        } else {
-          rows::scatter(row, flux[l], forces_of_bonds, force.data());
-        }
-      }
-    }
-    chunk_totals_[c] += totals;
-    chunk_stretch_[c] = std::max(chunk_stretch_[c], stretch);
-  }
-
-  /// Whether other processes evaluate these points, and this one need not.
-  [[nodiscard]] bool is_elsewhere(std::size_t first, std::size_t last) const {
-    if (!share_) return false;
-    const char* evaluated = share_->evaluated.data();
-    return std::none_of(evaluated + first, evaluated + last, [](char here) { return here != 0; });
-  }
-
   /// Energies, stretches and failures of all chunks from the processes that own them.
   void gather_chunks() {
     constexpr std::size_t width = 7;
     std::vector<double> values(table_.chunks.size() * width, 0.0);
     for (std::size_t c = 0; c < table_.chunks.size(); ++c) {
       if (!share_->own_chunk[c]) continue;
-      const BodyTotals& t = chunk_totals_[c];
-      const double failure = chunk_failure_[c] == no_failure ? -1.0 : static_cast<double>(chunk_failure_[c]);
+      const BodyTotals& t = chunks_[c].totals;
+      const double failure = chunks_[c].failure == no_failure ? -1.0 : static_cast<double>(chunks_[c].failure);
       double ratio = 0.0;
       if constexpr (has_director)
         for (std::size_t q = table_.chunks[c].begin; q < table_.chunks[c].end; ++q) ratio = std::max(ratio, point_volume_ratio_[q]);
-      const std::array<double, width> own{t.strain_energy, t.stabilization_energy, t.dissipated_power, t.active_power, chunk_stretch_[c], failure, ratio};
+      const std::array<double, width> own{t.strain_energy, t.stabilization_energy, t.dissipated_power, t.active_power, chunks_[c].stretch, failure, ratio};
       std::copy(own.begin(), own.end(), values.data() + c * width);
     }
     share_->gather_chunks(values, width);
     largest_volume_ratio_ = 0.0;
     for (std::size_t c = 0; c < table_.chunks.size(); ++c) {
       const double* v = values.data() + c * width;
-      chunk_totals_[c] = {v[0], v[1], v[2], v[3]};
-      chunk_stretch_[c] = v[4];
-      chunk_failure_[c] = v[5] < 0.0 ? no_failure : static_cast<std::size_t>(v[5]);
+      chunks_[c] = {{v[0], v[1], v[2], v[3]}, v[4], v[5] < 0.0 ? no_failure : static_cast<std::size_t>(v[5])};
       largest_volume_ratio_ = std::max(largest_volume_ratio_, v[6]);
     }
   }
@@ -929,34 +741,6 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     share_->gather_points(values, N);
     for (std::size_t q = 0; q < table_.points(); ++q)
       visit(q, [&](auto k, auto& x, int l = 0) { set_lane(x, l, values[q * N + static_cast<std::size_t>(k)]); });
-  }
-
-  template <bool Rate>
-  rows::StabilizationPower stabilize(const rows::StabilizedPoint& point, const rows::Gradient& du, const rows::Gradient& dv,
-                                     Quad* held, rows::Gradient& flux) {
-    const Vector4* X = table_.particle_position.data();
-    if (table_.period.any()) return rows::stabilize<true, Rate>(point, table_.period, X, motion<Rate>(), du, dv, held, force.data(), flux);
-    return rows::stabilize<false, Rate>(point, table_.period, X, motion<Rate>(), du, dv, held, force.data(), flux);
-  }
-
-  /// Components beyond the dimension are no unknowns, whatever the stress; but the stretch around an axis is u_R/R.
-  void restrict_to_dimension([[maybe_unused]] rows::Gradient& flux) const {
-    if constexpr (dimension < 3) {
-      const double around = table_.axisymmetric ? flux.column[2][2] : 0.0;
-      for (int K = 0; K < 3; ++K)
-        for (int i = 0; i < 3; ++i)
-          if (i >= dimension || K >= dimension) flux.column[K][i] = 0.0;
-      flux.column[2][0] = around;
-    }
-  }
-
-  /// Upper bound of the largest eigenvalue of a symmetric tensor, exact where two eigenvalues are equal:
-  /// t/3 + √(2/3 (A:A − t²/3)), t = tr A.
-  template <class T>
-  static T largest_eigenvalue_bound(const Tensor<T>& A) {
-    using std::sqrt, std::abs;
-    const T mean = first_invariant(A) * T(1.0 / 3.0);
-    return mean + sqrt(abs(contract(A, A) - mean * mean * T(3.0)) * T(2.0 / 3.0));
   }
 
   std::string name_;
@@ -974,9 +758,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   std::vector<rows::Motion> motion_;  // displacement (since the table) and velocity, packed for the force loop
   Field relative_;                    // displacement since the table, where the reference was updated
   std::size_t longest_row_ = 0;
-  std::vector<BodyTotals> chunk_totals_;
-  std::vector<double> chunk_stretch_;
-  std::vector<std::size_t> chunk_failure_;
+  std::vector<ChunkResult> chunks_;
   std::vector<Tensor3> point_rate_;
   std::vector<double> point_volume_ratio_;
   std::vector<std::vector<Index>> points_of_particle_;

@@ -33,16 +33,7 @@ struct ContactAnchoring {
   }
 
   /// Measures the gaps in every `interval`-th step; no force, no energy.
-  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time) {
-    if (!(time > last_time)) return {};
-    last_time = time;
-    if (countdown-- == 0) {
-      countdown = interval - 1;
-      fresh = true;
-      gaps.visit([&](auto& g) { g.measure(a, b); });
-    }
-    return {};
-  }
+  TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time);
   /// No force, no limit.
   [[nodiscard]] double stiffness_rate(const ParticleFields&, const ParticleFields&) const { return 0.0; }
 
@@ -67,3 +58,7 @@ struct ContactAnchoring {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/simulation/contact_anchoring.ipp>
+#endif

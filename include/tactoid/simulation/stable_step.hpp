@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <tactoid/core/tensor.hpp>
-#include <tactoid/quadrature/coloring.hpp>
+#include <tactoid/quadrature/point_table.hpp>
 #include <tactoid/simulation/body.hpp>
 
 namespace tactoid {
@@ -92,95 +93,48 @@ class StableStep {
     return body.region_wave_numbers();
   }
 
-  /// Largest eigenvalue of M⁻¹ K with K symmetric, by Lanczos' method in the inner product of M; multiply(x, y) sets
-  /// y = K x. Power iterations settle long before they arrive where the highest modes lie close together: steps of a
-  /// viscous gel, taken at their result, were unstable. The rest of the error is covered by 2 %.
-  template <class Multiply>
-  [[nodiscard]] static double largest_eigenvalue(const Eigen::VectorXd& masses, const Multiply& multiply) {
-    const auto inner = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& y) { return x.dot(masses.cwiseProduct(y)); };
-    Eigen::VectorXd mode(masses.size()), before = Eigen::VectorXd::Zero(masses.size()), next(masses.size());
-    // Arbitrary: nothing is orthogonal to it.
-    for (Eigen::Index i = 0; i < mode.size(); ++i) mode[i] = std::sin(12.9898 * static_cast<double>(i + 1) * 1.61803398875);
-    mode /= std::sqrt(inner(mode, mode));
-    std::vector<double> diagonal, beside;
-    double largest = 0.0;
-    constexpr int least = 10, most = 60;
-    for (int iteration = 0; iteration < most; ++iteration) {
-      multiply(mode, next);
-      if (!next.allFinite()) return std::numeric_limits<double>::quiet_NaN();
-      next.array() /= masses.array();
-      diagonal.push_back(inner(mode, next));
-      next -= diagonal.back() * mode;
-      if (!beside.empty()) next -= beside.back() * before;
-      const double norm = std::sqrt(inner(next, next));
-      const auto n = static_cast<Eigen::Index>(diagonal.size());
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-      ritz.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), n),
-                                  Eigen::Map<Eigen::VectorXd>(beside.data(), n - 1), Eigen::EigenvaluesOnly);
-      const double previous = largest;
-      largest = ritz.eigenvalues()[n - 1];
-      const bool settled = iteration >= least && std::abs(largest - previous) < 1e-3 * largest;
-      if (settled || !(largest > 0.0) || !(norm > 1e-12 * largest)) break;
-      beside.push_back(norm);
-      before.swap(mode);
-      mode = next / norm;
-    }
-    return 1.02 * std::max(largest, 0.0);
-  }
+  /// Sets y = K x.
+  using Multiply = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>;
 
-  /// Largest eigenvalue of M⁻¹ Σ_q V_q ρ G_q G_qᵀ over the points of region r, in the configuration of the table; 1/m².
+  /// Largest eigenvalue of M⁻¹ K with K symmetric, by Lanczos' method in the inner product of M. Power iterations settle long
+  /// before they arrive where the highest modes lie close together: steps of a viscous gel, taken at their result, were
+  /// unstable. The rest of the error is covered by 2 %.
+  [[nodiscard]] static double largest_eigenvalue(const Eigen::VectorXd& masses, const Multiply& multiply);
+
+  /// Largest eigenvalue of M⁻¹ Σ_q m_q G_q G_qᵀ over the points of region r, with their masses m_q (kg), in the configuration of
+  /// the table; 1/m².
+  [[nodiscard]] static double largest_wave_number(const PointTable& table, const std::vector<double>& masses,
+                                                  const std::vector<double>& point_masses, Index r);
+
+  /// Largest eigenvalue of the derivative of −M⁻¹ f in `field`, which the forces depend on, from differences of them: of `size` (in
+  /// the unit of the field) at most in each of the first D components.
+  [[nodiscard]] static double largest_eigenvalue(int D, const std::vector<double>& masses, Field& field, double size,
+                                                 const std::function<const Field&()>& internal_forces);
+
   template <class Body, class Region>
   [[nodiscard]] static double largest_wave_number(const Body& body, const Region& region, Index r) {
-    const PointTable& table = body.table();
-    const auto masses = Eigen::Map<const Eigen::VectorXd>(body.masses().data(), static_cast<Eigen::Index>(body.size()));
-    return largest_eigenvalue(masses, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& result) {
-      result.setZero();
-      for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
-        if (chunk.region != r) return;
-        for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
-          Vector3 gradient = Vector3::Zero();
-          for (const TableEntry& entry : table.row(q))
-            gradient += mode[entry.particle] * Eigen::Map<const Vector3>(entry.gradient);
-          gradient *= body.point_volume(q) * region.law(q).density;
-          for (const TableEntry& entry : table.row(q))
-            result[entry.particle] += gradient.dot(Eigen::Map<const Vector3>(entry.gradient));
-        }
-      });
-    });
+    std::vector<double> point_masses(body.table().points(), 0.0);
+    for (std::size_t q = region.begin; q < region.end; ++q) point_masses[q] = body.point_volume(q) * region.law(q).density;
+    return largest_wave_number(body.table(), body.masses(), point_masses, r);
   }
 
   /// Largest eigenvalue of the derivative of −M⁻¹ f in `field`, which is the body's displacement (1/s²) or velocity
-  /// (1/s), at the present displacement and no velocity, from differences of the internal forces. The difference in
-  /// `field` is 1e-6 of the smallest spacing times `rate`.
+  /// (1/s), at the present displacement and no velocity. The difference in `field` is 1e-6 of the smallest spacing times
+  /// `rate`.
   template <class Body>
   [[nodiscard]] static double largest_eigenvalue(Body& body, Field& field, double rate) {
     constexpr int D = Body::dimension;
     const Field displacement = body.displacement, velocity = body.velocity;
-    const std::size_t n = body.size();
     std::fill(body.velocity.begin(), body.velocity.end(), Vector4::Zero());
-    const Field start = field;
-    auto internal_forces = [&] {
-      std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
-      body.add_internal_forces(0.0, false);
-      return body.force;
-    };
-    const Field rest = internal_forces();
     double length = std::numeric_limits<double>::infinity();
     for (std::size_t q = 0; q < body.table().points(); ++q) {
       const Point<D> X = body.table().position[q].template head<D>();
       length = std::min(length, std::pow(body.table().volume[q] / body.cloud().circumference(X), 1.0 / D));
     }
-    Eigen::VectorXd masses(static_cast<Eigen::Index>(n) * D);
-    for (std::size_t i = 0; i < n; ++i) masses.segment<D>(static_cast<Eigen::Index>(i) * D).setConstant(body.masses()[i]);
-    const double eigenvalue = largest_eigenvalue(masses, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& result) {
-      const double size = 1e-6 * length * rate / mode.cwiseAbs().maxCoeff();
-      for (std::size_t i = 0; i < n; ++i) {
-        field[i] = start[i];
-        field[i].template head<D>() += size * mode.segment<D>(static_cast<Eigen::Index>(i) * D);
-      }
-      const Field force = internal_forces();
-      for (std::size_t i = 0; i < n; ++i)
-        result.segment<D>(static_cast<Eigen::Index>(i) * D) = (1.0 / size) * (rest[i] - force[i]).template head<D>();
+    const double eigenvalue = largest_eigenvalue(D, body.masses(), field, 1e-6 * length * rate, [&]() -> const Field& {
+      std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
+      body.add_internal_forces(0.0, false);
+      return body.force;
     });
     body.displacement = displacement;
     body.velocity = velocity;
@@ -193,3 +147,7 @@ class StableStep {
 };
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/simulation/stable_step.ipp>
+#endif

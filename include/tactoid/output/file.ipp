@@ -1,0 +1,38 @@
+#pragma once
+
+#include <tactoid/core/compiled.hpp>
+#include <tactoid/output/file.hpp>
+
+namespace tactoid {
+
+TACTOID_INLINE AtomicFile::AtomicFile(std::filesystem::path path, bool on_every_rank)
+    : path_(std::move(path)), temporary_(path_) {
+  if (!on_every_rank && !is_first_rank()) return;
+  temporary_ += ".part";
+  file_ = std::fopen(temporary_.c_str(), "wb");
+  if (file_ == nullptr) detail::fail_file("write", path_, errno);
+}
+
+TACTOID_INLINE void AtomicFile::commit(bool to_disc) {
+  if (file_ == nullptr) return;
+  const bool flushed = std::fflush(file_) == 0 && (!to_disc || ::fsync(::fileno(file_)) == 0);
+  const int flush_error = errno;
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  const int error = flushed ? errno : flush_error;
+  if (flushed && closed && std::rename(temporary_.c_str(), path_.c_str()) == 0) return;
+  const int reason = flushed && closed ? errno : error;
+  std::remove(temporary_.c_str());
+  detail::fail_file("write", path_, reason);
+}
+
+TACTOID_INLINE void prepare_folder(const std::filesystem::path& path) {
+  if (!is_first_rank()) return;
+  if (path.empty()) throw FileError("Cannot make an output folder without a name.");
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) detail::fail_file("make the folder", path, error.value());
+  if (!std::filesystem::is_directory(path, error)) detail::fail_file("make the folder", path, ENOTDIR);
+  if (::access(path.c_str(), W_OK | X_OK) != 0) detail::fail_file("write in the folder", path, errno);
+}
+
+}  // namespace tactoid

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <tactoid/core/compiled.hpp>
+#include <tactoid/quadrature/nodal_centroids.hpp>
+
+namespace tactoid {
+
+TACTOID_INLINE void NodalCentroids::validate() const {
+  require_non_negative("NodalCentroids.solid_ratio", solid_ratio);
+  if (!(stabilization_reach > 1.0) || !std::isfinite(stabilization_reach))
+    reject("NodalCentroids.stabilization_reach", stabilization_reach, "", "above 1");
+  require_non_negative("NodalCentroids.fluid_modulus", fluid_modulus, "Pa");
+  require_non_negative("NodalCentroids.solid_damping_time", solid_damping_time, "s");
+  require_non_negative("NodalCentroids.fluid_viscosity", fluid_viscosity, "Pa s");
+  require_positive("NodalCentroids.condition_limit", condition_limit);
+  require_non_negative("NodalCentroids.consistency_tolerance", consistency_tolerance);
+}
+
+template <int D>
+PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, const RowsOf<D>& rows_of_points,
+                                    const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved) const {
+  std::vector<Point<D>> centroids(cells.size());
+  for (std::size_t q = 0; q < cells.size(); ++q) centroids[q] = cells[q].centroid;
+  std::vector<double> supports = spacing;
+  for (double& radius : supports) radius *= support;
+
+  PointTable table = empty_table(cloud);
+  std::vector<double> weights;
+  const NeighborTable neighbors = neighbor_table(cloud, centroids, supports);
+  lay_out_rows(table, neighbors);
+  weights.assign(table.pairs(), 0.0);
+  table.mass_shares.assign(table.pairs(), 0.0);
+  for (const NodalCell<D>& cell : cells) {
+    table.volume.push_back(cell.volume);
+    table.region.push_back(cell.region);
+    table.owner.push_back(cell.particle);
+    table.position.push_back(pad(cell.centroid).template head<3>());
+  }
+  parallel_for(cells.size(), [&](std::size_t q) {
+    std::vector<KernelNeighbor<D>> near;
+    RowOfPoint<D> of_kernel;
+    const auto row = neighbors.row(q);
+    for (Index i : row) near.push_back({cloud.difference(centroids[q], cloud.positions[i]), supports[i], 1.0});
+    rows_of_points(near, of_kernel);
+    check_condition(q, table.position[q], row.size(), of_kernel.condition, condition_limit);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::size_t e = table.offsets[q] + k;
+      for (int d = 0; d < D; ++d) table.entries[e].gradient[d] = of_kernel.gradient[k][d];
+      table.mass_shares[e] = of_kernel.mass_share[k];
+      weights[e] = of_kernel.weight[k];
+    }
+  });
+  color_chunks(table, points_per_chunk);
+  if (consistency_tolerance > 0.0) {
+    const std::vector<Point<D>> normals = boundary_normal_integrals(cloud);
+    Field boundary;
+    for (const Point<D>& b : normals) boundary.push_back(pad(b));
+    if (cloud.axisymmetric) take_off_hoops(table, boundary);
+    if (moved) fit_boundary(table, normals, boundary);
+    make_consistent(table, weights, boundary, consistency_tolerance);
+  }
+  if (cloud.axisymmetric)
+    for (std::size_t q = 0; q < table.points(); ++q)
+      for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e)
+        table.entries[e].gradient[2] = table.mass_shares[e] / table.position[q][0];
+  weigh_stabilization(table, cloud, spacing);
+  return table;
+}
+
+template <int D>
+void NodalCentroids::weigh_stabilization(PointTable& table, const PointCloud<D>& cloud, const std::vector<double>& spacing) const {
+  table.stabilization_scale.assign(table.points(), 0.0);
+  table.bond_offsets.assign(1, 0);
+  std::vector<std::pair<TableEntry, double>> bonded, others;  // with their shares of the mass
+  for (std::size_t q = 0; q < table.points(); ++q) {
+    const Index owner = table.owner[q];
+    std::size_t e = table.offsets[q];
+    double moment = 0.0;
+    bonded.clear(), others.clear();
+    for (; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) {
+      const Index particle = table.entries[e].particle;
+      const double distance = cloud.difference(cloud.positions[owner], cloud.positions[particle]).norm();
+      const double x = distance / (stabilization_reach * spacing[particle]);
+      const bool bond = particle != owner && x < 1.0;
+      (bond ? bonded : others).emplace_back(table.entries[e], table.mass_shares[e]);
+      if (!bond) continue;
+      table.bond_weights.push_back(static_cast<float>(1.0 - x * x));
+      moment += static_cast<double>(table.bond_weights.back()) * distance * distance;
+    }
+    if (bonded.size() % 2 == 1) table.bond_weights.push_back(0.0F);
+    table.bond_offsets.push_back(table.bond_weights.size());
+    const bool padded = e < table.offsets[q + 1];
+    e = table.offsets[q];
+    for (const auto* part : {&bonded, &others})
+      for (const auto& [entry, share] : *part) {
+        table.entries[e] = entry;
+        table.mass_shares[e++] = share;
+      }
+    if (padded) table.entries[e].particle = table.entries[table.offsets[q]].particle;
+    table.stabilization_scale[q] = moment > 0.0 ? table.volume[q] * D / moment : 0.0;
+  }
+}
+
+}  // namespace tactoid
+
+#if defined(TACTOID_COMPILED)
+namespace tactoid {
+template PointTable NodalCentroids::table_of<1>(const PointCloud<1>&, double, const RowsOf<1>&, const std::vector<NodalCell<1>>&,
+                                                const std::vector<double>&, bool) const;
+template PointTable NodalCentroids::table_of<2>(const PointCloud<2>&, double, const RowsOf<2>&, const std::vector<NodalCell<2>>&,
+                                                const std::vector<double>&, bool) const;
+template PointTable NodalCentroids::table_of<3>(const PointCloud<3>&, double, const RowsOf<3>&, const std::vector<NodalCell<3>>&,
+                                                const std::vector<double>&, bool) const;
+}  // namespace tactoid
+#endif
