@@ -16,8 +16,10 @@ install(
   TARGETS tactoid tactoid_precompiled
   EXPORT tactoidTargets
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+  FILE_SET definitions DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILE_SET with_hdf5 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
-  FILE_SET with_zlib DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  FILE_SET with_zlib DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+  FILE_SET with_mpi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 if(TACTOID_WITH_MPI)
   install(TARGETS tactoid_mpi EXPORT tactoidMpiTargets FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
   install(EXPORT tactoidMpiTargets NAMESPACE tactoid:: DESTINATION "${tactoid_package_dir}")
@@ -28,13 +30,14 @@ if(TACTOID_HAVE_SUITESPARSE)
   install(EXPORT tactoidSuiteSparseTargets NAMESPACE tactoid:: DESTINATION "${tactoid_package_dir}")
   install(FILES "${CMAKE_CURRENT_LIST_DIR}/FindSuiteSparse.cmake" DESTINATION "${tactoid_package_dir}")
 endif()
+install(FILES "${CMAKE_CURRENT_LIST_DIR}/compiled.cmake" DESTINATION "${tactoid_package_dir}")
 install(
   EXPORT tactoidTargets
   NAMESPACE tactoid::
   DESTINATION "${tactoid_package_dir}")
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/tactoidConfig.cmake.in"
                               "${CMAKE_CURRENT_BINARY_DIR}/tactoidConfig.cmake"
-                              INSTALL_DESTINATION "${tactoid_package_dir}")
+                              INSTALL_DESTINATION "${tactoid_package_dir}" PATH_VARS CMAKE_INSTALL_INCLUDEDIR)
 # Header-only, so the package fits every architecture. Before 1.0 a minor version may break.
 write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/tactoidConfigVersion.cmake"
                                  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)

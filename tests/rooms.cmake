@@ -6,7 +6,7 @@ set(rooms core geometry neighbors input kernel quadrature kinematics material di
 set(rooms_with_fmt simulation integrator observe output verify) # elsewhere texts are made by core/errors.hpp
 set(errors "")
 
-file(GLOB_RECURSE files RELATIVE "${ROOT}/include/tactoid" "${ROOT}/include/tactoid/*.hpp")
+file(GLOB_RECURSE files RELATIVE "${ROOT}/include/tactoid" "${ROOT}/include/tactoid/*.hpp" "${ROOT}/include/tactoid/*.ipp")
 list(LENGTH files count)
 if(count EQUAL 0)
   message(FATAL_ERROR "No headers in ${ROOT}/include/tactoid.")

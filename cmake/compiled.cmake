@@ -1,0 +1,30 @@
+# tactoid::compiled, for programs that are compiled again and again: the functions that depend on no type of theirs (the *.ipp
+# beside the headers) compiled once, by the compiler and with the flags of the project that links it.
+include_guard()
+
+# `headers`: the folder that is included as <tactoid/…>.
+function(tactoid_add_compiled headers)
+  if(TARGET tactoid_compiled)
+    return()
+  endif()
+  file(GLOB_RECURSE definitions RELATIVE "${headers}" CONFIGURE_DEPENDS "${headers}/tactoid/*.ipp")
+  if(NOT definitions)
+    message(FATAL_ERROR "tactoid: there are no definitions of tactoid (*.ipp) in ${headers}/tactoid.")
+  endif()
+  list(TRANSFORM definitions REPLACE "tactoid/([a-z]+)/.*" "\\1" OUTPUT_VARIABLE rooms)
+  list(REMOVE_DUPLICATES rooms)
+  set(sources "")
+  foreach(room IN LISTS rooms)
+    set(includes ${definitions})
+    list(FILTER includes INCLUDE REGEX "^tactoid/${room}/")
+    list(TRANSFORM includes REPLACE "(.+)" "#include <\\1>\n")
+    list(JOIN includes "" includes)
+    file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/tactoid_compiled/${room}.cpp" CONTENT "${includes}" @ONLY)
+    list(APPEND sources "${CMAKE_CURRENT_BINARY_DIR}/tactoid_compiled/${room}.cpp")
+  endforeach()
+  add_library(tactoid_compiled STATIC EXCLUDE_FROM_ALL ${sources})
+  add_library(tactoid::compiled ALIAS tactoid_compiled)
+  target_link_libraries(tactoid_compiled PUBLIC tactoid::tactoid)
+  target_compile_definitions(tactoid_compiled PUBLIC TACTOID_COMPILED)
+  set_target_properties(tactoid_compiled PROPERTIES POSITION_INDEPENDENT_CODE ON) # for shared libraries and modules, too
+endfunction()
