@@ -287,6 +287,25 @@ TEST_CASE("Everything on: implicit steps agree with explicit ones, in the first 
   CHECK(coarse / fine == relative(2.0).epsilon(0.3));
 }
 
+TEST_CASE("Incomplete factors precondition the same steps as whole ones") {
+  const auto run = [](Preconditioner preconditioner) {
+    auto simulation = cube_on_slab(ImplicitDynamics{.time_step = 4e-8, .newton_tolerance = 1e-9, .preconditioner = preconditioner}, 1e14, 5e14);
+    simulation.run(4e-7);
+    return std::pair(simulation.body<0>().displacement, simulation.integrator().report());
+  };
+  const auto [a, whole] = run(Preconditioner::factorization);
+  const auto [b, part] = run(Preconditioner::incomplete);
+  double largest = 0.0, off = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, a[i].norm());
+    off = std::max(off, (a[i] - b[i]).norm());
+  }
+  CHECK(off < 1e-6 * largest);
+  CHECK(part.factorizations > 0);
+  CHECK(part.linear_iterations > whole.linear_iterations);
+  CHECK(part.linear_iterations < 20 * part.newton_iterations);  // and it does precondition
+}
+
 TEST_CASE("Implicit runs: the same bits for any number of threads, and after a restart") {
   const auto compose = [] { return cube_on_slab(ImplicitDynamics{.first_time_step = 2e-8}, 1e14, 5e14); };
   auto whole = compose();
