@@ -4,8 +4,9 @@
     python3 benchmarks/compile_cost.py [--compiler g++] [--standard c++20] [--repetitions 3]
 
 The smallest complete program (examples/minimal, -O2), and a file that includes one room and nothing else, against a file that
-includes what the library depends on (Eigen, nanoflann, fmt): the room over its dependencies. The least of the repetitions
-counts, which other programs disturb least.
+includes what the library depends on (Eigen, nanoflann, fmt): the room over its dependencies. As headers only
+(tactoid::tactoid); with what needs no type of the user's compiled elsewhere (tactoid::compiled), and with that as a precompiled
+header, too (tactoid::precompiled). The least of the repetitions counts, which other programs disturb least.
 """
 import argparse
 import os
@@ -56,15 +57,29 @@ def main():
             runs = [cost(base + list(flags) + [str(source)]) for _ in range(options.repetitions)]
             return min(run[0] for run in runs), max(run[1] for run in runs)
 
-        print(f"{'':24} {'s':>7} {'MB':>7}")
-        seconds, megabytes = least(ROOT / "examples" / "minimal" / "main.cpp", "-O2")
-        print(f"{'examples/minimal, -O2':24} {seconds:7.1f} {megabytes:7.0f}", flush=True)
-        reference, megabytes = least(DEPENDENCIES, "-O2")
-        print(f"{'the dependencies':24} {reference:7.1f} {megabytes:7.0f}", flush=True)
-        for header in sorted((ROOT / "include" / "tactoid").glob("*/all.hpp")):
-            room = header.parent.name
-            seconds, megabytes = least(f"#include <tactoid/{room}/all.hpp>\n", "-O2")
-            print(f"{room + '/all.hpp':24} {seconds:7.1f} {megabytes:7.0f} {seconds / reference:6.2f} of the dependencies", flush=True)
+        compiled = "-DTACTOID_COMPILED"
+
+        def report(name, run, note=""):
+            print(f"{name:34} {run[0]:7.1f} {run[1]:7.0f} {note}", flush=True)
+
+        print(f"{'':34} {'s':>7} {'MB':>7}")
+        minimal = ROOT / "examples" / "minimal" / "main.cpp"
+        report("examples/minimal, -O2: headers", least(minimal, "-O2"))
+        report("... compiled", least(minimal, "-O2", compiled))
+        header = pathlib.Path(folder, "precompiled.hpp")
+        header.write_text("#include <tactoid/tactoid.hpp>\n", encoding="utf-8")
+        precompiled = str(header) + (".pch" if "clang" in options.compiler else ".gch")
+        making = [options.compiler, f"-std={options.standard}", "-fopenmp", "-O2", compiled, f"-I{ROOT / 'include'}", "-isystem", options.eigen,
+                  "-x", "c++-header", str(header), "-o", precompiled]
+        once = cost(making)
+        report("... compiled, and precompiled", least(minimal, "-O2", compiled, "-include", str(header)))
+        report("the precompiled header, once", once)
+        reference = least(DEPENDENCIES, "-O2")
+        report("the dependencies", reference)
+        for room in sorted(header.parent.name for header in (ROOT / "include" / "tactoid").glob("*/all.hpp")):
+            for mode, flags in (("headers", []), ("compiled", [compiled])):
+                run = least(f"#include <tactoid/{room}/all.hpp>\n", "-O2", *flags)
+                report(f"{room}/all.hpp, {mode}", run, f"{run[0] / reference[0]:6.2f} of the dependencies")
 
 
 if __name__ == "__main__":
