@@ -291,6 +291,8 @@ TEST_CASE("Incomplete factors precondition the same steps as whole ones") {
   const auto run = [](Preconditioner preconditioner) {
     auto simulation = cube_on_slab(ImplicitDynamics{.time_step = 4e-8, .newton_tolerance = 1e-9, .preconditioner = preconditioner}, 1e14, 5e14);
     simulation.run(4e-7);
+    using Incomplete = detail::FactorizedInverse<Eigen::IncompleteLUT<double>>;
+    CHECK((dynamic_cast<const Incomplete*>(simulation.integrator().past.inverse.get()) != nullptr) == (preconditioner == Preconditioner::incomplete));
     return std::pair(simulation.body<0>().displacement, simulation.integrator().report());
   };
   const auto [a, whole] = run(Preconditioner::factorization);
@@ -302,8 +304,7 @@ TEST_CASE("Incomplete factors precondition the same steps as whole ones") {
   }
   CHECK(off < 1e-6 * largest);
   CHECK(part.factorizations > 0);
-  CHECK(part.linear_iterations > whole.linear_iterations);
-  CHECK(part.linear_iterations < 20 * part.newton_iterations);  // and it does precondition
+  CHECK(part.linear_iterations <= 2 * whole.linear_iterations);  // here the factors are nearly whole
 }
 
 TEST_CASE("Implicit runs: the same bits for any number of threads, and after a restart") {
