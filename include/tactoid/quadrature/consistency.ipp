@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include <Eigen/Cholesky>
+
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/quadrature/coarse_space.hpp>
 #include <tactoid/quadrature/coloring.hpp>
