@@ -65,9 +65,9 @@ template <Kernel K>
   kernel.validate();
   return detail::fill_table<D>(cloud, points, options, support_radii(kernel, cloud), kernel.support, K::basis_size, true,
                                [&](std::span<const KernelNeighbor<D>> near, ShapeFunctions<D>& shape) {
-                                   kernel.shape_functions(near, shape);
-                                   return shape.condition;
-                                 });
+                                 kernel.shape_functions(near, shape);
+                                 return shape.condition;
+                               });
 }
 
 /// Value-based gradients G_qI of the cloud at the given points: Σ_I G_qI f(X_I) = ∇f(X_q) for f of the basis. Throws as
@@ -80,8 +80,8 @@ template <Kernel K>
   kernel.validate();
   return detail::fill_table<D>(cloud, points, options, support_radii(kernel, cloud), kernel.support, K::basis_size, false,
                                [&](std::span<const KernelNeighbor<D>> near, ShapeFunctions<D>& shape) {
-                                   return kernel.direct_gradient(near, shape.gradient);
-                                 });
+                                 return kernel.direct_gradient(near, shape.gradient);
+                               });
 }
 
 /// Interpolated value Σ_I φ_I(X_q) f_I at point q of a field given by its coefficients; T is a double or a vector.
