@@ -71,21 +71,13 @@ void bare_sweep(benchmark::State& state) {
   std::vector<Field> own(threads, force);
   const auto sweep = [&](std::size_t thread) {
     Field& f = own[thread];
-    std::vector<TableEntry> unpacked(1000);
     std::fill(f.begin(), f.end(), Vector4::Zero());
     for (std::size_t q = table.points() * thread / threads; q < table.points() * (thread + 1) / threads; ++q) {
-      Quad even[3] = {}, odd[3] = {};
-      std::span<const TableEntry> row;
-      if constexpr (std::is_same_v<Entry, TableEntry>) row = table.stored_row<Entry>(q);
-      else row = rows::unpack(table.stored_row<Entry>(q), unpacked.data());
-      for (std::size_t k = 0; k < row.size(); k += 2)
-        for (int K = 0; K < 3; ++K) {
-          even[K] += row[k].gradient[K] * quad(displacement[row[k].particle].data());
-          odd[K] += row[k + 1].gradient[K] * quad(displacement[row[k + 1].particle].data());
-        }
-      const Quad x = 1e3 * (even[0] + odd[0]), y = 1e3 * (even[1] + odd[1]), z = 1e3 * (even[2] + odd[2]);
-      for (const TableEntry& entry : row)
-        quad(f[entry.particle].data()) -= entry.gradient[0] * x + entry.gradient[1] * y + entry.gradient[2] * z;
+      const auto row = table.stored_row<Entry>(q);
+      rows::Gradient du;
+      rows::gather(row, displacement.data(), du);
+      for (Quad& column : du.column) column *= 1e3;
+      rows::scatter(row, du, {}, f.data());
     }
   };
   measure(state,

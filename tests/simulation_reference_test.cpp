@@ -134,6 +134,17 @@ TEST_CASE("The same in a periodic block, with and without damping and stabilisat
   compare(Body{"block", cloud, Rkpm<3>{}, NodalCentroids{.solid_ratio = 0.0}, laws});
 }
 
+TEST_CASE("The same with the gradients that are stored in single precision") {
+  const Materials laws{Region{"body", NeoHookean::from_young(1e5, 0.3)}};
+  const auto cloud = box(Box{.size = {1e-6, 1.1e-6, 1.2e-6}, .cells = {6, 7, 8}});
+  for (const double ratio : {0.0, 0.1})
+    for (const double time : {0.0, 2e-9})
+      compare(Body{"block", cloud, Rkpm<3>{}, stored_as<float>(NodalCentroids{.solid_ratio = ratio, .solid_damping_time = time}), laws});
+  compare(Body{"gel", ball({.radius = 1e-6, .core_radius = 0.5e-6, .core_cells = 4}), Rkpm<3>{}, stored_as<float>(NodalCentroids{}),
+               Materials{Region{"nucleus", NematicGel<>{}}, Region{"cytoplasm", NematicGel<>{}}}, DirectorField<>{},
+               [](const Vector3&) { return Vector3(0.0, 0.6, 0.8); }});
+}
+
 TEST_CASE("The same in the plane, with a law that remembers") {
   compare(Body{"sheet", rectangle({.size = {1e-6, 1.1e-6}, .cells = {13, 11}}), Rkpm<2>{}, NodalCentroids{}, Materials{Region{"body", YangVisco<>{}}}});
 }

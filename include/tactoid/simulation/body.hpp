@@ -703,8 +703,12 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     motion_.resize(size());
     const bool updated = !earlier_.empty();
     for_each_particle([&](std::size_t i) {
-      quad(motion_[i].displacement) = quad(displacement[i].data());
-      if (updated) quad(motion_[i].displacement) += quad(earlier_.position[i].data()) - quad(table_.particle_position[i].data());
+      Quad u = quad(displacement[i].data());
+      if (updated) {
+        u += quad(earlier_.position[i].data());
+        u -= quad(table_.particle_position[i].data());
+      }
+      quad(motion_[i].displacement) = u;
       quad(motion_[i].velocity) = quad(velocity[i].data());
     });
   }

@@ -92,7 +92,6 @@ struct ForceLoop {
   /// Gradients of the fields at the points of a block, which has as many as a law has lanes.
   template <int W>
   struct BlockGradients {
-    std::span<const TableEntry> row[W];  // in double precision
     rows::Gradient motion[W], rate[W], director[W];
   };
 
@@ -101,18 +100,10 @@ struct ForceLoop {
   void gather_block(std::size_t begin, std::size_t end, BlockGradients<W>& g) const {
     for (std::size_t q = begin; q < end; ++q) {
       const std::size_t l = q - begin;
-      const auto stored = table.template stored_row<Entry>(q);
-      if constexpr (std::is_same_v<Entry, SingleTableEntry>) {
-        thread_local std::vector<TableEntry> unpacked;
-        unpacked.resize(std::max(unpacked.size(), W * longest_row));
-        g.row[l] = rows::unpack(stored, unpacked.data() + l * longest_row);
-      } else {
-        g.row[l] = stored;
-      }
-      const auto row = g.row[l];
-      if constexpr (has_director) rows::gather(row, motion, director, g.motion[l], g.rate[l], g.director[l]);
-      else if constexpr (Rate) rows::gather(row, motion, g.motion[l], g.rate[l]);
+      const auto row = table.template stored_row<Entry>(q);
+      if constexpr (Rate) rows::gather(row, motion, g.motion[l], g.rate[l]);
       else rows::gather(row, displacement, g.motion[l]);
+      if constexpr (has_director) rows::gather(row, director, g.director[l]);
       if constexpr (D == 2)
         if (table.axisymmetric) {
           rows::turn_around_axis(g.motion[l]);
@@ -152,7 +143,7 @@ struct ForceLoop {
   }
 
   template <bool Rate>
-  rows::StabilizationPower stabilize(const rows::StabilizedPoint& point, const rows::Gradient& du, const rows::Gradient& dv,
+  rows::StabilizationPower stabilize(const rows::StabilizedPoint<Entry>& point, const rows::Gradient& du, const rows::Gradient& dv,
                                      Quad* held, rows::Gradient& flux) const {
     const Vector4* X = table.particle_position.data();
     const rows::MotionOf<Rate>* moving;
@@ -181,8 +172,8 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
   constexpr std::size_t W = Region::width;
   const double kappa = table.stabilization_scale.empty() ? 0.0 : region.stabilization.modulus;
   const double tau = region.stabilization.damping_time;
-  thread_local std::vector<Quad> held;  // forces of the pairs of a row, until they are scattered
-  held.resize(std::max(held.size(), longest_row));
+  thread_local std::vector<Quad> held;  // forces of the pairs of a row, one row after the other, until they are scattered
+  held.resize(std::max(held.size(), W * longest_row));
   ChunkResult result;
   BodyTotals totals;
   double stretch = 0.0;
@@ -207,6 +198,11 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
     }
     const Inversion<T> F = invert(state.deformation_gradient);
     if (advance) region.advanced[region.block(first)] = history;
+    if constexpr (history_size<typename Region::Law> > 0)
+      if (last < chunk.end) {
+        rows::prefetch(&region.histories[region.block(last)], 1);
+        if (advance) rows::prefetch(&region.advanced[region.block(last)], 1);
+      }
     const Tensor<T> inverse_C = F.inverse * F.inverse.transpose();
     const T bound = largest_eigenvalue_bound<T>(inverse_C);
 
@@ -236,24 +232,25 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
       totals.dissipated_power += V * lane(response.dissipated_power, l);
       totals.active_power += V * lane(response.active_power, l);
       restrict_to_dimension(flux[l]);
-      const auto row = gradients.row[l];
-      if (q + W < chunk.end) rows::prefetch(table.template stored_row<Entry>(q + W));
-      std::size_t bonds = 0;
-      if (kappa > 0.0) {
-        const rows::StabilizedPoint point{row, table.bonds(q), table.owner[q], kappa * table.stabilization_scale[q], tau};
-        const auto power = stabilize<Rate>(point, gradients.motion[l], gradients.rate[l], held.data(), flux[l]);
-        totals.stabilization_energy += power.energy;
-        totals.dissipated_power += power.dissipated;
-        bonds = point.weights.size();
-      }
-      const auto forces_of_bonds = std::span<const Quad>(held).first(bonds);
-      if constexpr (has_director) {
-        if constexpr (D == 2)
-          if (table.axisymmetric) rows::turn_back(flux_h[l]);
-        rows::scatter(row, flux[l], forces_of_bonds, force, flux_h[l], director_flux);
-      } else {
-        rows::scatter(row, flux[l], forces_of_bonds, force);
-      }
+      if constexpr (has_director && D == 2)
+        if (table.axisymmetric) rows::turn_back(flux_h[l]);
+    }
+    // All rows are stabilised before the first is scattered: they do not wait for each other.
+    const bool stabilized = kappa > 0.0;
+    for (std::size_t q = first; stabilized && q < last; ++q) {
+      const int l = static_cast<int>(q - first);
+      const rows::StabilizedPoint<Entry> point{table.template stored_row<Entry>(q), table.bonds(q), table.owner[q], kappa * table.stabilization_scale[q], tau};
+      const auto power = stabilize<Rate>(point, gradients.motion[l], gradients.rate[l], held.data() + l * longest_row, flux[l]);
+      totals.stabilization_energy += power.energy;
+      totals.dissipated_power += power.dissipated;
+    }
+    for (std::size_t q = first; q < last; ++q) {
+      const std::size_t l = q - first;
+      if (q + W < chunk.end) rows::prefetch(table.template stored_row<Entry>(q + W).data(), table.row(q + W).size());
+      const auto forces_of_bonds = std::span<const Quad>(held).subspan(l * longest_row, stabilized ? table.bonds(q).size() : 0);
+      const auto row = table.template stored_row<Entry>(q);
+      if constexpr (has_director) rows::scatter(row, flux[l], forces_of_bonds, force, flux_h[l], director_flux);
+      else rows::scatter(row, flux[l], forces_of_bonds, force);
     }
   }
   result.totals = totals;

@@ -10,9 +10,9 @@
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/quadrature/point_table.hpp>
 
-/// What happens per pair of a quadrature point and a particle. Everything in this file is the hot path: fixed
-/// sizes, contiguous rows, no branch that depends on data. A padded vector is a register (core/quad.hpp), and each loop
-/// holds no more of them than a machine with sixteen has: what does not fit goes through memory for every pair.
+/// What happens per pair of a quadrature point and a particle. Everything in this file is the hot path: fixed sizes, contiguous
+/// rows, no branch that depends on data. A padded vector is a register, and two of them are one where registers are long enough
+/// (core/quad.hpp): u and v of one particle, or the same quantity of two.
 namespace tactoid::rows {
 
 /// What a particle does, side by side: one line of the cache.
@@ -34,17 +34,38 @@ struct Gradient {
   Quad column[3] = {};  ///< 1/m times the unit of f
 };
 
-/// sum ← sum + f ⊗ gradient.
-[[gnu::always_inline]] inline void add_outer(Gradient& sum, const Quad& f, const double (&gradient)[3]) {
+/// Columns of two of them side by side.
+struct TwoGradients {
+  Octet column[3] = {};  ///< 1/m times the units
+  TwoGradients() = default;
+  /// Of both.
+  TwoGradients(const Gradient& first, const Gradient& second) {
+    for (int K = 0; K < 3; ++K) column[K] = join(first.column[K], second.column[K]);
+  }
+};
+
+/// sum ← sum + f ⊗ gradient, of one quantity or of two, with three numbers in memory.
+template <class Sum, class F>
+[[gnu::always_inline]] inline void add_outer(Sum& sum, const F& f, const double* gradient) {
   sum.column[0] += gradient[0] * f;
   sum.column[1] += gradient[1] * f;
   sum.column[2] += gradient[2] * f;
 }
-
-/// The same for f in memory.
-[[gnu::always_inline]] inline void add_outer(Gradient& sum, const double* f, const double (&gradient)[3]) {
-  const Quad value = quad(f);
-  add_outer(sum, value, gradient);
+/// The same in single precision, of two.
+[[gnu::always_inline]] inline void add_outer(TwoGradients& sum, const Octet& f, const float* gradient) {
+  Quad G;
+  widen(gradient, G);
+  sum.column[0] += twice<0>(G) * f;
+  sum.column[1] += twice<1>(G) * f;
+  sum.column[2] += twice<2>(G) * f;
+}
+/// The same for two entries that follow each other and one quantity at the particle of each.
+[[gnu::always_inline]] inline void add_outer(TwoGradients& sum, const Octet& f, const SingleTableEntry* two) {
+  Octet G;
+  widen(two->gradient, G);
+  sum.column[0] += spread<0>(G) * f;
+  sum.column[1] += spread<1>(G) * f;
+  sum.column[2] += spread<2>(G) * f;
 }
 
 /// In a meridian section the third column of a gathered gradient is f/R. The parts of ∂f/∂X around the axis, where the unit
@@ -64,27 +85,33 @@ inline void gather(std::span<const TableEntry> row, const Vector4* f, Gradient& 
   Gradient even, odd;
   for (std::size_t k = 0; k < row.size(); k += 2) {
     const TableEntry &a = row[k], &b = row[k + 1];
-    add_outer(even, f[a.particle].data(), a.gradient);
-    add_outer(odd, f[b.particle].data(), b.gradient);
+    add_outer(even, quad(f[a.particle].data()), a.gradient);
+    add_outer(odd, quad(f[b.particle].data()), b.gradient);
   }
   for (int K = 0; K < 3; ++K) df.column[K] = even.column[K] + odd.column[K];
 }
 
-/// A row of single precision in double, written to `to`. Once per step: gather, stabilise and scatter all read it from the cache.
-inline std::span<const TableEntry> unpack(std::span<const SingleTableEntry> row, TableEntry* to) {
-  for (std::size_t k = 0; k < row.size(); ++k) widen(&row[k], &to[k]);
-  return {to, row.size()};
+/// The same in single precision: two entries are widened at once.
+inline void gather(std::span<const SingleTableEntry> row, const Vector4* f, Gradient& df) {
+  const auto two = [&](std::size_t k) { return join(quad(f[row[k].particle].data()), quad(f[row[k + 1].particle].data())); };
+  TwoGradients sum, other;
+  std::size_t k = 0;
+  for (; k + 4 <= row.size(); k += 4) {
+    add_outer(sum, two(k), &row[k]);
+    add_outer(other, two(k + 2), &row[k + 2]);
+  }
+  if (k < row.size()) add_outer(sum, two(k), &row[k]);  // rows are even
+  for (int K = 0; K < 3; ++K) {
+    const Octet column = sum.column[K] + other.column[K];
+    df.column[K] = low(column) + high(column);
+  }
 }
 
 /// ∂f/∂X of a field at a point of the table, the parts around an axis included; outside of the hot path.
 [[nodiscard]] inline Tensor3 gradient_at(const PointTable& table, std::size_t q, const Field& f) {
   Gradient df;
-  if (table.single_entries.empty()) {
-    gather(table.stored_row<TableEntry>(q), f.data(), df);
-  } else {
-    std::vector<TableEntry> row(table.row(q).size());
-    gather(unpack(table.stored_row<SingleTableEntry>(q), row.data()), f.data(), df);
-  }
+  if (table.single_entries.empty()) gather(table.stored_row<TableEntry>(q), f.data(), df);
+  else gather(table.stored_row<SingleTableEntry>(q), f.data(), df);
   if (table.axisymmetric) turn_around_axis(df);
   Tensor3 gradient;
   for (int K = 0; K < 3; ++K)
@@ -93,27 +120,18 @@ inline std::span<const TableEntry> unpack(std::span<const SingleTableEntry> row,
 }
 
 /// The gradients of displacement and velocity in one sweep.
-inline void gather(std::span<const TableEntry> row, const Motion* motion, Gradient& du, Gradient& dv) {
-  Gradient u, v;
-  for (const TableEntry& entry : row) {
-    const Motion& m = motion[entry.particle];
-    add_outer(u, m.displacement, entry.gradient);
-    add_outer(v, m.velocity, entry.gradient);
+template <class Entry>
+inline void gather(std::span<const Entry> row, const Motion* motion, Gradient& du, Gradient& dv) {
+  TwoGradients even, odd;
+  for (std::size_t k = 0; k < row.size(); k += 2) {
+    add_outer(even, octet(motion[row[k].particle].displacement), row[k].gradient);
+    add_outer(odd, octet(motion[row[k + 1].particle].displacement), row[k + 1].gradient);
   }
-  du = u, dv = v;
-}
-
-/// And of the director.
-inline void gather(std::span<const TableEntry> row, const Motion* motion, const Vector4* director, Gradient& du, Gradient& dv,
-                   Gradient& dh) {
-  Gradient u, v, h;
-  for (const TableEntry& entry : row) {
-    const Motion& m = motion[entry.particle];
-    add_outer(u, m.displacement, entry.gradient);
-    add_outer(v, m.velocity, entry.gradient);
-    add_outer(h, director[entry.particle].data(), entry.gradient);
+  for (int K = 0; K < 3; ++K) {
+    const Octet column = even.column[K] + odd.column[K];
+    du.column[K] = low(column);
+    dv.column[K] = high(column);
   }
-  du = u, dv = v, dh = h;
 }
 
 /// Gradients of W points as one tensor of lanes: A(i, K) holds ∂f_i/∂X_K of all of them.
@@ -155,40 +173,70 @@ inline void to_points(const Tensor<double>& A, const double (&volume)[1], Gradie
   for (int K = 0; K < 3; ++K) points[0].column[K] = volume[0] * Quad{A(0, K), A(1, K), A(2, K), 0.0};
 }
 
-/// f ← f − Σ_K flux_K G_K: what the stress columns V_q P_·K do to the particle of a pair.
-[[gnu::always_inline]] inline void subtract(double* f, const TableEntry& entry, const Gradient& flux) {
-  quad(f) -= entry.gradient[0] * flux.column[0] + entry.gradient[1] * flux.column[1] + entry.gradient[2] * flux.column[2];
+/// f = Σ_K flux_K G_K: what the stress columns V_q P_·K do to the particle of a pair; of one flux or of two.
+template <class Flux, class F>
+[[gnu::always_inline]] inline void contract(const Flux& flux, const double* gradient, F& f) {
+  f = gradient[0] * flux.column[0] + gradient[1] * flux.column[1] + gradient[2] * flux.column[2];
 }
-/// The same, and − held, a force that this pair has of its own.
-[[gnu::always_inline]] inline void subtract(double* f, const TableEntry& entry, const Gradient& flux, const Quad& held) {
-  quad(f) -= entry.gradient[0] * flux.column[0] + entry.gradient[1] * flux.column[1] + entry.gradient[2] * flux.column[2] + held;
+/// The same in single precision, of two.
+[[gnu::always_inline]] inline void contract(const TwoGradients& flux, const float* gradient, Octet& f) {
+  Quad G;
+  widen(gradient, G);
+  f = twice<0>(G) * flux.column[0] + twice<1>(G) * flux.column[1] + twice<2>(G) * flux.column[2];
+}
+/// The same for two entries that follow each other and one flux, which comes twice.
+[[gnu::always_inline]] inline void contract(const TwoGradients& flux, const SingleTableEntry* two, Octet& f) {
+  Octet G;
+  widen(two->gradient, G);
+  f = spread<0>(G) * flux.column[0] + spread<1>(G) * flux.column[1] + spread<2>(G) * flux.column[2];
 }
 
 /// f_I ← f_I − Σ_K flux_K G_qI,K, and − held for the first pairs, which have a force of their own.
 inline void scatter(std::span<const TableEntry> row, const Gradient& flux, std::span<const Quad> held, Vector4* f) {
   const Gradient local = flux;  // what a store to a force may have changed, a compiler must load anew
-  for (std::size_t k = 0; k < held.size(); ++k) subtract(f[row[k].particle].data(), row[k], local, held[k]);
-  for (std::size_t k = held.size(); k < row.size(); ++k) subtract(f[row[k].particle].data(), row[k], local);
+  const auto subtract = [&](const TableEntry& entry, const auto&... own) {
+    Quad force;
+    contract(local, entry.gradient, force);
+    quad(f[entry.particle].data()) -= (force + ... + own);
+  };
+  for (std::size_t k = 0; k < held.size(); ++k) subtract(row[k], held[k]);
+  for (std::size_t k = held.size(); k < row.size(); ++k) subtract(row[k]);
+}
+
+/// The same in single precision: two entries at once. `held` has an even length.
+inline void scatter(std::span<const SingleTableEntry> row, const Gradient& flux, std::span<const Quad> held, Vector4* f) {
+  const TwoGradients local(flux, flux);
+  const auto subtract = [&](const SingleTableEntry* two, const auto&... own) {
+    Octet force;
+    contract(local, two, force);
+    force = (force + ... + own);
+    quad(f[two[0].particle].data()) -= low(force);  // one after the other: the two may be the same particle
+    quad(f[two[1].particle].data()) -= high(force);
+  };
+  for (std::size_t k = 0; k < held.size(); k += 2) subtract(&row[k], join(held[k], held[k + 1]));
+  for (std::size_t k = held.size(); k < row.size(); k += 2) subtract(&row[k]);
 }
 
 /// The same, and the flux of the director in the same sweep.
-inline void scatter(std::span<const TableEntry> row, const Gradient& flux, std::span<const Quad> held, Vector4* f,
+template <class Entry>
+inline void scatter(std::span<const Entry> row, const Gradient& flux, std::span<const Quad> held, Vector4* f,
                     const Gradient& director_flux, Vector4* h) {
-  const Gradient local = flux, local_h = director_flux;
-  for (std::size_t k = 0; k < held.size(); ++k) {
-    subtract(f[row[k].particle].data(), row[k], local, held[k]);
-    subtract(h[row[k].particle].data(), row[k], local_h);
-  }
-  for (std::size_t k = held.size(); k < row.size(); ++k) {
-    subtract(f[row[k].particle].data(), row[k], local);
-    subtract(h[row[k].particle].data(), row[k], local_h);
-  }
+  const TwoGradients local(flux, director_flux);
+  const auto subtract = [&](const Entry& entry, const auto&... own) {
+    Octet both;
+    contract(local, entry.gradient, both);
+    quad(f[entry.particle].data()) -= (low(both) + ... + own);
+    quad(h[entry.particle].data()) -= high(both);
+  };
+  for (std::size_t k = 0; k < held.size(); ++k) subtract(row[k], held[k]);
+  for (std::size_t k = held.size(); k < row.size(); ++k) subtract(row[k]);
 }
 
-/// Asks for a row that will be needed soon, so that it comes from memory while other rows are computed.
-template <class Entry>
-void prefetch(std::span<const Entry> row) {
-  for (std::size_t k = 0; k < row.size(); k += 64 / sizeof(Entry)) __builtin_prefetch(row.data() + k);
+/// Asks for what will be needed soon, so that it comes from memory while something else is computed. Addresses may be beyond an array.
+template <class T>
+void prefetch(const T* begin, std::size_t count) {
+  const char* line = reinterpret_cast<const char*>(begin);
+  for (std::size_t k = 0; k < count * sizeof(T); k += 64) __builtin_prefetch(line + k);
 }
 
 /// Energy and dissipated power of the stabilisation of one point.
@@ -198,63 +246,89 @@ struct StabilizationPower {
 };
 
 /// A point whose pairs are stabilised.
+template <class Entry>
 struct StabilizedPoint {
-  std::span<const TableEntry> row;  ///< its pairs
+  std::span<const Entry> row;      ///< its pairs
   std::span<const float> weights;  ///< w_J, of the first entries of the row
   Index owner;                     ///< I
   double kappa;                    ///< κ, N/m
   double tau;                      ///< τ, s
 };
 
+/// Where two particles are in the reference configuration; in periodic directions, as seen from `origin`: the difference of nearest images.
+template <bool Periodic>
+[[gnu::always_inline]] inline void place(const Vector4& first, const Vector4& second, const Vector4& origin, const Vector3& period, Octet& x) {
+  if constexpr (!Periodic) {
+    x = join(quad(first.data()), quad(second.data()));
+  } else {
+    double difference[8] = {};
+    for (int K = 0; K < 3; ++K) {
+      difference[K] = first[K] - origin[K];
+      difference[4 + K] = second[K] - origin[K];
+      if (period[K] > 0.0)
+        for (double* d : {&difference[K], &difference[4 + K]}) *d -= period[K] * std::round(*d / period[K]);
+    }
+    x = octet(difference);
+  }
+}
+
+/// How far two particles are from where they were if their field was linear around the owner: f − origin − (∂f/∂X) X.
+[[gnu::always_inline]] inline void deviate(const double* first, const double* second, const Octet& origin, const TwoGradients& df, const Octet& x, Octet& r) {
+  r = join(quad(first), quad(second)) - origin - spread<0>(x) * df.column[0] - spread<1>(x) * df.column[1] - spread<2>(x) * df.column[2];
+}
+
 /// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
 ///   r_J = u_J − u_I − H ΔX_J,  H = F_q − 1,   energy ½ κ Σ_J w_J |r_J|²,   force from κ w_J (r_J + τ ṙ_J).
 /// Writes the force of each of these pairs to `held`, adds the owner's to f, and subtracts from `flux` the part that acts
 /// through F_q. `periodic` directions take the nearest images. Without them r_J = (u_J − H X_J) − (u_I − H X_I), which saves
-/// the differences of positions.
-template <bool Periodic, bool Rate>
-StabilizationPower stabilize(const StabilizedPoint& point, const Vector3& period, const Vector4* X, const MotionOf<Rate>* motion,
+/// the differences of positions. Two pairs at once: the weights are even in number.
+template <bool Periodic, bool Rate, class Entry>
+StabilizationPower stabilize(const StabilizedPoint<Entry>& point, const Vector3& period, const Vector4* X, const MotionOf<Rate>* motion,
                              const Gradient& du, [[maybe_unused]] const Gradient& dv, Quad* held, Vector4* f, Gradient& flux) {
-  const double* XI = X[point.owner].data();
-  const double x_owner[3] = {XI[0], XI[1], XI[2]};
-  const Gradient H = du, H_rate = dv;
-  Quad origin = quad(displacement(motion[point.owner])), origin_rate = {};
-  if constexpr (Rate) origin_rate = quad(motion[point.owner].velocity);
+  const Vector4 XI = X[point.owner];
+  const TwoGradients H(du, du), H_rate(dv, dv);
+  Quad u_origin = quad(displacement(motion[point.owner])), v_origin = {};
+  if constexpr (Rate) v_origin = quad(motion[point.owner].velocity);
   if constexpr (!Periodic)
     for (int K = 0; K < 3; ++K) {
-      origin -= x_owner[K] * H.column[K];
-      if constexpr (Rate) origin_rate -= x_owner[K] * H_rate.column[K];
+      u_origin -= XI[K] * du.column[K];
+      if constexpr (Rate) v_origin -= XI[K] * dv.column[K];
     }
-  Quad force_sum = {}, energy = {}, dissipated = {};
-  Gradient moment;
-  for (std::size_t k = 0; k < point.weights.size(); ++k) {
-    const Index J = point.row[k].particle;
-    const double* XJ = X[J].data();
-    double x[3] = {XJ[0], XJ[1], XJ[2]};
-    if constexpr (Periodic)
-      for (int K = 0; K < 3; ++K) {
-        x[K] -= x_owner[K];
-        if (period[K] > 0.0) x[K] -= period[K] * std::round(x[K] / period[K]);
-      }
-    const double w = point.kappa * static_cast<double>(point.weights[k]);
-    const Quad r = quad(displacement(motion[J])) - origin - x[0] * H.column[0] - x[1] * H.column[1] - x[2] * H.column[2];
-    Quad force = w * r;
+  const Octet u_origins = join(u_origin, u_origin), v_origins = join(v_origin, v_origin);
+  const Quad ones = {1.0, 1.0, 1.0, 1.0};
+  Octet sum = {}, energy = {}, dissipated = {};
+  TwoGradients moments;
+  for (std::size_t k = 0; k < point.weights.size(); k += 2) {
+    const Index J = point.row[k].particle, L = point.row[k + 1].particle;
+    const double w_J = point.kappa * static_cast<double>(point.weights[k]), w_L = point.kappa * static_cast<double>(point.weights[k + 1]);
+    const Octet w = join(w_J * ones, w_L * ones);
+    Octet x, r;
+    place<Periodic>(X[J], X[L], XI, period, x);
+    deviate(displacement(motion[J]), displacement(motion[L]), u_origins, H, x, r);
+    Octet force = w * r;
     energy += force * r;
     if constexpr (Rate) {
-      const Quad rate = quad(motion[J].velocity) - origin_rate - x[0] * H_rate.column[0] - x[1] * H_rate.column[1] - x[2] * H_rate.column[2];
-      const Quad damping = (w * point.tau) * rate;
+      Octet rate;
+      deviate(motion[J].velocity, motion[L].velocity, v_origins, H_rate, x, rate);
+      const Octet damping = point.tau * (w * rate);
       dissipated += damping * rate;
       force += damping;
     }
-    held[k] = force;
-    force_sum += force;
-    add_outer(moment, force, x);
+    held[k] = low(force);
+    held[k + 1] = high(force);
+    sum += force;
+    moments.column[0] += spread<0>(x) * force;
+    moments.column[1] += spread<1>(x) * force;
+    moments.column[2] += spread<2>(x) * force;
   }
+  const Quad force_sum = low(sum) + high(sum);
   quad(f[point.owner].data()) += force_sum;
   for (int K = 0; K < 3; ++K) {
-    flux.column[K] -= moment.column[K];
-    if constexpr (!Periodic) flux.column[K] += x_owner[K] * force_sum;
+    flux.column[K] -= low(moments.column[K]) + high(moments.column[K]);
+    if constexpr (!Periodic) flux.column[K] += XI[K] * force_sum;
   }
-  return {0.5 * (energy[0] + energy[1] + energy[2]), dissipated[0] + dissipated[1] + dissipated[2]};
+  const Quad stored = low(energy) + high(energy), lost = low(dissipated) + high(dissipated);
+  return {0.5 * (stored[0] + stored[1] + stored[2]), lost[0] + lost[1] + lost[2]};
 }
 
 }  // namespace tactoid::rows
