@@ -80,6 +80,7 @@ struct SpreadingParameters {
   double safety = 0.8;             ///< of the stable time step
   double time_step = 0.0;          ///< s; 0: chosen by the library
   double min_time_step = 1e-15;    ///< s; a run whose stable step is shorter stops
+  double substrate_mass_scaling = 1.0;  ///< masses of the substrate over its true ones, >= 1: steps become longer by up to its square root
   int subcycling = 1;              ///< largest ratio of the steps of the two bodies, a power of two; 1: they are the same
   double end_time = 5e-6;          ///< s
 
@@ -158,6 +159,8 @@ struct SpreadingParameters {
                          "Fixed time step; 0: chosen by the program");
     options.add_quantity("min-time-step", &min_time_step, Quantity::time, Range::non_negative(),
                          "A run whose stable time step is shorter stops");
+    options.add("substrate-mass-scaling", &substrate_mass_scaling, Range::between(1.0, 1e6),
+                "The substrate is so many times as heavy as it is: longer steps, slower waves. The run says so");
     options.add("subcycling", &subcycling, Range::between(1, 64),
                 "Explicit steps of the softer body may be so many of the stiffer one's, a power of two; 1: both take the same");
   }
@@ -232,7 +235,7 @@ struct SpreadingParameters {
   [[nodiscard]] YangVisco<> substrate_law(double factor) const {
     const double viscous = preset == "elastic" ? 0.0 : preset == "viscous/10" ? 0.1 : 1.0;
     const ModifiedMooneyRivlin base{
-        .density = substrate_density, .c1 = substrate_c1, .c2 = substrate_c2, .lambda = substrate_lambda};
+        .density = substrate_density * substrate_mass_scaling, .c1 = substrate_c1, .c2 = substrate_c2, .lambda = substrate_lambda};
     return {.elastic = base.scaled(factor), .a1 = viscous * a1, .a2 = viscous * a2, .a3 = a3};
   }
   /// The substrate whose factor grows with the angle from one side to the other (Fig. 11).

@@ -144,7 +144,7 @@ class SpreadingRecorder {
   /// The final values under the names of the history, what the run took (a continued one: since then, for `steps_taken`), and
   /// whether it came to its end.
   template <class S>
-  void write_summary(S& simulation, std::size_t steps_taken, double wall_seconds, bool completed) const {
+  void write_summary(S& simulation, double substrate_mass_scaling, std::size_t steps_taken, double wall_seconds, bool completed) const {
     Summary summary;
     for (std::size_t i = 0; i < columns_.size(); ++i) summary.set(columns_[i], last_[i]);
     summary.set("steps", simulation.steps());
@@ -152,6 +152,7 @@ class SpreadingRecorder {
     summary.set("particles_cell", simulation.template body<0>().size());
     summary.set("particles_substrate", simulation.template body<1>().size());
     summary.set("pairs", simulation.pairs());
+    if (substrate_mass_scaling > 1.0) summary.set("substrate_mass_scaling", substrate_mass_scaling);
     double visits = static_cast<double>(steps_taken) * static_cast<double>(simulation.pairs());
     if constexpr (requires { simulation.integrator().report.body_steps; })
       if (simulation.integrator().max_ratio > 1 && simulation.steps() > 0) {

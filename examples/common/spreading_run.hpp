@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -71,6 +72,9 @@ void SpreadingRun::operator()(const Case& spreading, const Options& options) con
   tell(fmt::format("cell {} particles, substrate {} particles, {} pairs, first stable step {:.3g} ns, {}{} threads\n",
                    simulation.template body<0>().size(), simulation.template body<1>().size(), simulation.pairs(),
                    1e9 * simulation.largest_stable_time_step(), ranks, thread_count()));
+  if (p.substrate_mass_scaling > 1.0)
+    tell(fmt::format("mass scaling: the substrate is {:g} times as heavy as it is, its waves are {:.3g} times as slow\n", p.substrate_mass_scaling,
+                     std::sqrt(p.substrate_mass_scaling)));
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const double setup = seconds();
   const auto record = [&](auto& s) { recorder.record(s, spreading.added.values(s)); };
@@ -86,7 +90,7 @@ void SpreadingRun::operator()(const Case& spreading, const Options& options) con
   };
   const auto finish = [&](bool completed) {
     progress.finish();
-    recorder.write_summary(simulation, simulation.steps() - first_step, seconds() - setup, completed);
+    recorder.write_summary(simulation, p.substrate_mass_scaling, simulation.steps() - first_step, seconds() - setup, completed);
   };
   keeper.run([&] {
     simulation.run(p.end_time, every(p.end_time / samples, record),

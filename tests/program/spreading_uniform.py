@@ -147,6 +147,20 @@ class Results(Case):
         for name in os.listdir(one / "fields"):
             self.assertEqual((one / "fields" / name).read_bytes(), (two / "fields" / name).read_bytes())
 
+    def test_a_heavier_substrate_takes_fewer_steps_and_says_so(self):
+        near = ["--gap", "1nm", "--resolution", "0.4", "--end-time", "0.2us", "--frames", "1", "--samples", "5", "--threads", "1"]
+        light = self.succeed(*near, "--out", "light")
+        heavy = self.succeed(*near, "--substrate-mass-scaling", "4", "--out", "heavy")
+        dense = self.succeed(*near, "--substrate-density", "4000", "--out", "dense")
+        self.assertNotIn("mass scaling", light.stdout + dense.stdout)
+        self.assertIn("the substrate is 4 times as heavy as it is, its waves are 2 times as slow", heavy.stdout)
+        light, heavy, dense = (json.loads((self.folder / name / "summary.json").read_text()) for name in ("light", "heavy", "dense"))
+        self.assertNotIn("substrate_mass_scaling", light)
+        self.assertEqual(heavy["substrate_mass_scaling"], 4.0)
+        self.assertLess(abs(light["steps"] / heavy["steps"] - 2.0), 0.2)
+        for name in ("spread_area", "kinetic_energy", "momentum_z", "steps"):  # it is mass, and nothing else
+            self.assertEqual(heavy[name], dense[name], name)
+
     def test_bodies_take_steps_of_their_own(self):
         near = ["--gap", "1nm", "--resolution", "0.4", "--end-time", "0.2us", "--frames", "1", "--samples", "5", "--threads", "1"]
         self.succeed(*near, "--out", "plain")
@@ -218,6 +232,7 @@ class BadInput(Case):
             ("viscosity", "-1", "-1 Pa.s", "zero or positive"),
             ("safety", "1.5", "1.5", "between 0.01 and 1"),
             ("subcycling", "0", "0", "between 1 and 64"),
+            ("substrate-mass-scaling", "0.5", "0.5", "between 1 and"),
             ("threads", "0", "0", "between 1 and 1024"),
             ("frames", "-1", "-1", "between 1 and"),
         ):
