@@ -50,19 +50,19 @@ void parallel_for(std::size_t count, const Body& body) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Σ_i term(i) over [0, count), on all threads. Terms are added up in 64 parts, whatever the number of threads: the same
+/// Σ_i term(i) over [0, count), on all threads, where `zero` changes no sum. Terms are added up in 64 parts, whatever the number of threads: the same
 /// bits for any.
-template <class Term>
-[[nodiscard]] double parallel_sum(std::size_t count, const Term& term) {
-  std::array<double, 64> parts{};
+template <class T = double, class Term>
+[[nodiscard]] T parallel_sum(std::size_t count, const Term& term, const T& zero = T()) {
+  std::array<T, 64> parts;
   const std::size_t size = (count + parts.size() - 1) / parts.size();
   parallel_for(parts.size(), [&](std::size_t p) {
-    double sum = 0.0;
+    T sum = zero;
     for (std::size_t i = p * size; i < std::min(count, (p + 1) * size); ++i) sum += term(i);
     parts[p] = sum;
   });
-  double total = 0.0;
-  for (const double part : parts) total += part;
+  T total = zero;
+  for (const T& part : parts) total += part;
   return total;
 }
 

@@ -78,7 +78,7 @@ class CoarseCorrection {
  private:
   using Factor = Eigen::SparseMatrix<double>;
   static constexpr double particles_per_cell = 64.0;
-  static constexpr std::size_t most_nodes = 2000;
+  static constexpr std::size_t most_nodes = 6000;  // E is dense while it is summed: 288 MB
   static constexpr std::size_t stride = 8;        // of the rows that E is made of
   static constexpr double regularization = 1e-6;  // of E, over its diagonal: affine functions are in its null space
 
@@ -133,6 +133,7 @@ class CoarseCorrection {
   Eigen::MatrixXd affine_;
   Eigen::VectorXd scale_;
   Field coarse_, ordered_;  // values at the nodes, in their order and in that of the factors
+  std::vector<Field> parts_;  // of sums over the particles
   Eigen::SimplicialLDLT<Factor> solver_;
 };
 

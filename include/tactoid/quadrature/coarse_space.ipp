@@ -64,9 +64,20 @@ TACTOID_INLINE CoarseSpace::Splines CoarseSpace::at(const Vector3& X) const {
 }
 
 TACTOID_INLINE void CoarseCorrection::add(const Field& r, Field& z) {
-  std::fill(coarse_.begin(), coarse_.end(), Vector4::Zero());
-  for (std::size_t i = 0; i < r.size(); ++i)
-    space_.for_each(splines_[i], [&](std::size_t node, double value) { coarse_[node] += value * r[i]; });
+  // In parts that do not depend on the threads.
+  if (parts_.empty()) parts_.assign(16, Field(coarse_.size()));
+  const std::size_t size = (r.size() + parts_.size() - 1) / parts_.size();
+  parallel_for(parts_.size(), [&](std::size_t p) {
+    Field& part = parts_[p];
+    std::fill(part.begin(), part.end(), Vector4::Zero());
+    for (std::size_t i = p * size; i < std::min(r.size(), (p + 1) * size); ++i)
+      space_.for_each(splines_[i], [&](std::size_t node, double value) { part[node] += value * r[i]; });
+  });
+  parallel_for(coarse_.size(), [&](std::size_t node) {
+    Vector4 sum = Vector4::Zero();
+    for (const Field& part : parts_) sum += part[node];
+    coarse_[node] = sum;
+  });
   take_off_affine();
   solve();
   take_off_affine();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/parallel.hpp>
 #include <tactoid/quadrature/point_table.hpp>
 
 namespace tactoid {
@@ -81,9 +82,7 @@ class AffineResidual {
 inline constexpr std::size_t particles_for_coarse_space = 5000;
 
 [[nodiscard]] inline Vector4 componentwise_dot(const Field& a, const Field& b) {
-  Vector4 sum = Vector4::Zero();
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].cwiseProduct(b[i]);
-  return sum;
+  return parallel_sum(a.size(), [&](std::size_t i) -> Vector4 { return a[i].cwiseProduct(b[i]); }, Vector4(Vector4::Zero()));
 }
 
 }  // namespace detail

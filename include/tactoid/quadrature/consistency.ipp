@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include <tactoid/core/compiled.hpp>
+#include <tactoid/core/parallel.hpp>
 #include <tactoid/quadrature/coarse_space.hpp>
 #include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/quadrature/consistency.hpp>
@@ -133,9 +134,7 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::span<co
   if (coarse && !coarse->usable()) coarse.reset();
   const Field first_residual = coarse ? residual : Field();
   auto precondition = [&] {
-    for (std::size_t i = 0; i < n; ++i) {
-      z[i] = diagonal[i] > 0.0 ? Vector4(residual[i] / diagonal[i]) : Vector4::Zero();
-    }
+    parallel_for(n, [&](std::size_t i) { z[i] = diagonal[i] > 0.0 ? Vector4(residual[i] / diagonal[i]) : Vector4::Zero(); });
     if (coarse) coarse->add(residual, z);
   };
   precondition();
@@ -157,15 +156,15 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::span<co
     Vector4 alpha = Vector4::Zero(), beta = Vector4::Zero();
     for (int k = 0; k < 3; ++k)
       if (active(k) && curvature[k] > 0.0) alpha[k] = rho[k] / curvature[k];
-    for (std::size_t i = 0; i < n; ++i) {
+    parallel_for(n, [&](std::size_t i) {
       mu[i] += alpha.cwiseProduct(direction[i]);
       residual[i] -= alpha.cwiseProduct(image[i]);
-    }
+    });
     precondition();
     const Vector4 next = detail::componentwise_dot(residual, z);
     for (int k = 0; k < 3; ++k)
       if (rho[k] > 0.0) beta[k] = next[k] / rho[k];
-    for (std::size_t i = 0; i < n; ++i) direction[i] = z[i] + beta.cwiseProduct(direction[i]);
+    parallel_for(n, [&](std::size_t i) { direction[i] = z[i] + beta.cwiseProduct(direction[i]); });
     rho = next;
     norm = detail::componentwise_dot(residual, residual);
     ++report.iterations;
