@@ -7,17 +7,21 @@
 #else
 #define TACTOID_INLINE
 
+#include <cstddef>
+
 #include <Eigen/Core>
+
+#include <tactoid/core/quad.hpp>
 
 namespace tactoid::detail {
 
 /// Vectors lie in memory as the processor wants them that a program is compiled for. Where the compiled library was compiled
 /// for another one, the linker does not find this.
-template <int Alignment>
+template <int Alignment, std::size_t Vector>
 struct LibraryForTheSameProcessor {
   LibraryForTheSameProcessor() noexcept;
 };
-inline const LibraryForTheSameProcessor<EIGEN_MAX_ALIGN_BYTES> library_for_the_same_processor;
+inline const LibraryForTheSameProcessor<EIGEN_MAX_ALIGN_BYTES, alignof(Quad) + alignof(Octet)> library_for_the_same_processor;
 
 }  // namespace tactoid::detail
 #endif

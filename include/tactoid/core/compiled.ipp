@@ -5,10 +5,10 @@
 #if defined(TACTOID_COMPILED)
 namespace tactoid::detail {
 
-template <int Alignment>
-LibraryForTheSameProcessor<Alignment>::LibraryForTheSameProcessor() noexcept = default;
+template <int Alignment, std::size_t Vector>
+LibraryForTheSameProcessor<Alignment, Vector>::LibraryForTheSameProcessor() noexcept = default;
 
-template struct LibraryForTheSameProcessor<EIGEN_MAX_ALIGN_BYTES>;
+template struct LibraryForTheSameProcessor<EIGEN_MAX_ALIGN_BYTES, alignof(Quad) + alignof(Octet)>;
 
 }  // namespace tactoid::detail
 #endif

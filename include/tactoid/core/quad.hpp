@@ -24,8 +24,11 @@ struct Twice {
   [[gnu::always_inline]] Twice(double a, double b, double c, double d) : first{a, b}, second{c, d} {}
 
   ///@{
-  /// Element i of four.
-  [[gnu::always_inline]] double operator[](int i) const { return i < 2 ? first[i] : second[i - 2]; }
+  /// Element i.
+  [[gnu::always_inline]] double operator[](int i) const {
+    constexpr int half = sizeof(Half) / sizeof(double);
+    return i < half ? first[i] : second[i - half];
+  }
   [[gnu::always_inline]] double& operator[](int i) { return reinterpret_cast<double*>(this)[i]; }
   ///@}
 
@@ -52,7 +55,7 @@ using QuadInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = d
 }  // namespace detail
 
 /// Four doubles from p on.
-[[gnu::always_inline]] inline const detail::QuadInMemory& quad(const double* p) { return *reinterpret_cast<const detail::QuadInMemory*>(p); }
+[[gnu::always_inline]] inline Quad quad(const double* p) { return *reinterpret_cast<const detail::QuadInMemory*>(p); }
 
 /// Element K in all places.
 template <int K>
@@ -61,9 +64,9 @@ template <int K>
 /// Three floats in double precision, and 0 in the place of what follows them: a number that is no float.
 [[gnu::always_inline]] inline void widen(const float* p, Quad& wide) {
   using Words [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
-  using Floats [[gnu::vector_size(16), gnu::may_alias]] = float;
-  const Words bits = *reinterpret_cast<const Words*>(p) & Words{-1, -1, -1, 0};  // as a float it is denormal, and slow to convert
-  wide = __builtin_convertvector(reinterpret_cast<const Floats&>(bits), Quad);
+  using Floats [[gnu::vector_size(16)]] = float;
+  const auto bits = *reinterpret_cast<const Words*>(p) & Words{-1, -1, -1, 0};  // as a float it is denormal, and slow to convert
+  wide = __builtin_convertvector(reinterpret_cast<Floats>(bits), Quad);
 }
 
 /// Rows become columns: a[i] of the four become the new a, and so on.
@@ -78,12 +81,15 @@ template <int K>
 #else
 namespace detail {
 using Pair [[gnu::vector_size(16)]] = double;
-/// A Quad as it lies in memory: anywhere where doubles may lie, and part of whatever object.
-struct QuadInMemory {
+/// A Quad as it lies in memory: anywhere where doubles may lie, and part of whatever object. (Of members alone g++ would not know that.)
+struct [[gnu::may_alias]] QuadInMemory {
   using Half [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
   Half first;
   Half second;
-  [[gnu::always_inline]] operator Twice<Pair>() const { return {first, second}; }
+  [[gnu::always_inline]] operator Twice<Pair>() const {
+    const Pair low = first, high = second;  // copies, which are aligned
+    return {low, high};
+  }
   [[gnu::always_inline]] QuadInMemory& operator=(const Twice<Pair>& b) { return first = b.first, second = b.second, *this; }
   [[gnu::always_inline]] QuadInMemory& operator+=(const Twice<Pair>& b) { return first += b.first, second += b.second, *this; }
   [[gnu::always_inline]] QuadInMemory& operator-=(const Twice<Pair>& b) { return first -= b.first, second -= b.second, *this; }
@@ -148,9 +154,9 @@ template <int K>
 /// Twice three floats in double precision, each three of them with something that is no float behind it.
 [[gnu::always_inline]] inline void widen(const float* p, Octet& wide) {
   using Words [[gnu::vector_size(32), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
-  using Floats [[gnu::vector_size(32), gnu::may_alias]] = float;
-  const Words bits = *reinterpret_cast<const Words*>(p) & Words{-1, -1, -1, 0, -1, -1, -1, 0};
-  wide = _mm512_cvtps_pd(reinterpret_cast<const Floats&>(bits));  // of __builtin_convertvector g++ 12 makes five instructions
+  using Floats [[gnu::vector_size(32)]] = float;
+  const auto bits = *reinterpret_cast<const Words*>(p) & Words{-1, -1, -1, 0, -1, -1, -1, 0};
+  wide = _mm512_cvtps_pd(reinterpret_cast<Floats>(bits));  // of __builtin_convertvector g++ 12 makes five instructions
 }
 #else
 /// Eight doubles, 64 bytes: two Quads side by side.

@@ -439,7 +439,13 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     point_scale_ = wave_numbers();
     if constexpr (std::is_same_v<Entry, SingleTableEntry>) table_.use_single_precision();
     longest_row_ = 0;
-    for (Index q = 0; q < table_.points(); ++q) longest_row_ = std::max(longest_row_, table_.row(q).size());
+    for (Index q = 0; q < table_.points(); ++q) {
+      const std::size_t row = table_.row(q).size(), bonds = table_.bonds(q).size();
+      if (row % 2 != 0 || bonds % 2 != 0 || bonds > row)
+        throw GeometryError(fmt::format("Body \"{}\": the quadrature has made a row of {} entries and {} bonds at point {}; both must be even (lay_out_rows), and bonds no more.",
+                                        name_, row, bonds, q));
+      longest_row_ = std::max(longest_row_, row);
+    }
   }
 
   /// The present configuration as a new reference: particles, points with their volumes, and what is kept of the first one.

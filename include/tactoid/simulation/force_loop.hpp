@@ -238,7 +238,7 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
     // All rows are stabilised before the first is scattered: they do not wait for each other.
     const bool stabilized = kappa > 0.0;
     for (std::size_t q = first; stabilized && q < last; ++q) {
-      const int l = static_cast<int>(q - first);
+      const std::size_t l = q - first;
       const rows::StabilizedPoint<Entry> point{table.template stored_row<Entry>(q), table.bonds(q), table.owner[q], kappa * table.stabilization_scale[q], tau};
       const auto power = stabilize<Rate>(point, gradients.motion[l], gradients.rate[l], held.data() + l * longest_row, flux[l]);
       totals.stabilization_energy += power.energy;
@@ -246,7 +246,10 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
     }
     for (std::size_t q = first; q < last; ++q) {
       const std::size_t l = q - first;
-      if (q + W < chunk.end) rows::prefetch(table.template stored_row<Entry>(q + W).data(), table.row(q + W).size());
+      if (q + W < chunk.end) {
+        const auto next = table.template stored_row<Entry>(q + W);
+        rows::prefetch(next.data(), next.size());
+      }
       const auto forces_of_bonds = std::span<const Quad>(held).subspan(l * longest_row, stabilized ? table.bonds(q).size() : 0);
       const auto row = table.template stored_row<Entry>(q);
       if constexpr (has_director) rows::scatter(row, flux[l], forces_of_bonds, force, flux_h[l], director_flux);

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <initializer_list>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 #include <tactoid/core/lanes.hpp>
 #include <tactoid/core/quad.hpp>
@@ -232,7 +233,7 @@ inline void scatter(std::span<const Entry> row, const Gradient& flux, std::span<
   for (std::size_t k = held.size(); k < row.size(); ++k) subtract(row[k]);
 }
 
-/// Asks for what will be needed soon, so that it comes from memory while something else is computed. Addresses may be beyond an array.
+/// Asks for what will be needed soon, so that it comes from memory while something else is computed.
 template <class T>
 void prefetch(const T* begin, std::size_t count) {
   const char* line = reinterpret_cast<const char*>(begin);
@@ -261,7 +262,7 @@ template <bool Periodic>
   if constexpr (!Periodic) {
     x = join(quad(first.data()), quad(second.data()));
   } else {
-    double difference[8] = {};
+    alignas(64) double difference[8] = {};
     for (int K = 0; K < 3; ++K) {
       difference[K] = first[K] - origin[K];
       difference[4 + K] = second[K] - origin[K];
@@ -284,7 +285,7 @@ template <bool Periodic>
 /// the differences of positions. Two pairs at once: the weights are even in number.
 template <bool Periodic, bool Rate, class Entry>
 StabilizationPower stabilize(const StabilizedPoint<Entry>& point, const Vector3& period, const Vector4* X, const MotionOf<Rate>* motion,
-                             const Gradient& du, [[maybe_unused]] const Gradient& dv, Quad* held, Vector4* f, Gradient& flux) {
+                             const Gradient& du, const Gradient& dv, Quad* held, Vector4* f, Gradient& flux) {
   const Vector4 XI = X[point.owner];
   const TwoGradients H(du, du), H_rate(dv, dv);
   Quad u_origin = quad(displacement(motion[point.owner])), v_origin = {};
