@@ -54,9 +54,6 @@ namespace detail {
 using QuadInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 }  // namespace detail
 
-/// Four doubles from p on.
-[[gnu::always_inline]] inline Quad quad(const double* p) { return *reinterpret_cast<const detail::QuadInMemory*>(p); }
-
 /// Element K in all places.
 template <int K>
 [[gnu::always_inline]] inline Quad everywhere(const Quad& a) { return __builtin_shufflevector(a, a, K, K, K, K); }
@@ -99,9 +96,6 @@ struct [[gnu::may_alias]] QuadInMemory {
 /// Four doubles, 32 bytes.
 using Quad = detail::Twice<detail::Pair>;
 
-/// Four doubles from p on.
-[[gnu::always_inline]] inline Quad quad(const double* p) { return *reinterpret_cast<const detail::QuadInMemory*>(p); }
-
 /// Element K in all places.
 template <int K>
 [[gnu::always_inline]] inline Quad everywhere(const Quad& a) {
@@ -125,7 +119,9 @@ template <int K>
 }
 #endif
 
-/// Four doubles from p on, to assign to.
+/// Four doubles from p on.
+[[gnu::always_inline]] inline Quad quad(const double* p) { return *reinterpret_cast<const detail::QuadInMemory*>(p); }
+/// The same to assign to.
 [[gnu::always_inline]] inline detail::QuadInMemory& quad(double* p) { return *reinterpret_cast<detail::QuadInMemory*>(p); }
 
 #ifdef __AVX512F__

@@ -60,13 +60,17 @@ template <class Sum, class F>
   sum.column[1] += twice<1>(G) * f;
   sum.column[2] += twice<2>(G) * f;
 }
-/// The same for two entries that follow each other and one quantity at the particle of each.
+/// The same with one quantity at each of two particles, each with three numbers of its own.
+[[gnu::always_inline]] inline void add_outer(TwoGradients& sum, const Octet& f, const Octet& gradients) {
+  sum.column[0] += spread<0>(gradients) * f;
+  sum.column[1] += spread<1>(gradients) * f;
+  sum.column[2] += spread<2>(gradients) * f;
+}
+/// The same with two entries that follow each other.
 [[gnu::always_inline]] inline void add_outer(TwoGradients& sum, const Octet& f, const SingleTableEntry* two) {
   Octet G;
   widen(two->gradient, G);
-  sum.column[0] += spread<0>(G) * f;
-  sum.column[1] += spread<1>(G) * f;
-  sum.column[2] += spread<2>(G) * f;
+  add_outer(sum, f, G);
 }
 
 /// In a meridian section the third column of a gathered gradient is f/R. The parts of ∂f/∂X around the axis, where the unit
@@ -318,9 +322,7 @@ StabilizationPower stabilize(const StabilizedPoint<Entry>& point, const Vector3&
     held[k] = low(force);
     held[k + 1] = high(force);
     sum += force;
-    moments.column[0] += spread<0>(x) * force;
-    moments.column[1] += spread<1>(x) * force;
-    moments.column[2] += spread<2>(x) * force;
+    add_outer(moments, force, x);
   }
   const Quad force_sum = low(sum) + high(sum);
   quad(f[point.owner].data()) += force_sum;
