@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -89,6 +90,47 @@ double consistency(C& contact, TestBody<D>& a, TestBody<D>& b, std::uint64_t see
   b.position = xb;
   CHECK(scale > 0.0);
   return std::abs(work + slope) / std::abs(work);
+}
+
+/// Moves the two bodies along a random direction and compares how the forces change, by central differences of fourth order, with what
+/// add_stiffness says. Returns the error relative to the largest change; of A's forces alone where the motion of B is left out.
+template <int D, class C>
+double stiffness_error(C& contact, TestBody<D>& a, TestBody<D>& b, std::uint64_t seed, double step, bool both = true) {
+  auto fa = a.fields(), fb = b.fields();
+  contact.initialize(a.cloud, fa, b.cloud, fb);
+  (void)contact.apply(fa, fb, 0.0);
+  const std::array<std::size_t, 2> begin = {0, 3 * a.cloud.size()};
+  Eigen::VectorXd direction(3 * (a.cloud.size() + b.cloud.size()));
+  for (Eigen::Index i = 0; i < direction.size(); ++i) {
+    const bool of_b = i >= static_cast<Eigen::Index>(begin[1]), out_of_plane = D == 2 && i % 3 == 2;
+    direction[i] = out_of_plane || (of_b && !both) ? 0.0 : hashed_uniform(seed, static_cast<std::uint64_t>(i));
+  }
+  Eigen::VectorXd assembled = Eigen::VectorXd::Zero(direction.size());
+  contact.add_stiffness(fa, fb, [&](bool of_b, Index i, bool by_b, Index j, const Tensor3& K) {
+    Vector3 change = K * direction.segment<3>(static_cast<Eigen::Index>(begin[by_b] + 3 * j));
+    if (D == 2) change[2] = 0.0;
+    assembled.segment<3>(static_cast<Eigen::Index>(begin[of_b] + 3 * i)) += change;
+  });
+  const Field xa = a.position, xb = b.position;
+  const auto forces = [&](double s) {
+    const auto move = [&](Field& x, const Field& from, std::size_t at) {
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = from[i] + s * pad(Vector3(direction.segment<3>(static_cast<Eigen::Index>(at + 3 * i))));
+    };
+    move(a.position, xa, begin[0]);
+    move(b.position, xb, begin[1]);
+    (void)contact.apply(a.fields(), b.fields(), 0.0);
+    Eigen::VectorXd f(direction.size());
+    for (std::size_t i = 0; i < xa.size(); ++i) f.segment<3>(static_cast<Eigen::Index>(3 * i)) = a.force[i].template head<3>();
+    for (std::size_t i = 0; i < xb.size(); ++i) f.segment<3>(static_cast<Eigen::Index>(begin[1] + 3 * i)) = b.force[i].template head<3>();
+    return f;
+  };
+  Eigen::VectorXd exact = -(8.0 * (forces(step) - forces(-step)) - (forces(2.0 * step) - forces(-2.0 * step))) / (12.0 * step);
+  a.position = xa;
+  b.position = xb;
+  const auto count = static_cast<Eigen::Index>(both ? direction.size() : begin[1]);
+  CHECK(exact.head(count).norm() > 0.0);
+  return (exact - assembled).head(count).cwiseAbs().maxCoeff() / exact.head(count).cwiseAbs().maxCoeff();
 }
 
 }  // namespace
@@ -334,6 +376,36 @@ TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positio
     worst = std::max(worst, consistency<2>(round, a3, b3, 600 * seed, 3e-7 * um));
   }
   MESSAGE("largest relative error of the work: ", worst);
+  CHECK(worst < 1e-6);
+}
+
+TEST_CASE("the stiffness of a contact is how its forces change: gaps, normals that turn, areas; in one and two passes, in 3D, in a plane, around an axis") {
+  double worst = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    auto a = small_ball(3, 2), b = slab(7);
+    a.place({0.1 * um, 0.07 * um, 0.9 * um}, 0.03 * um, seed, 0.3, Vector3(1, 0.3, 0.5));
+    b.place({0, 0, 0}, 0.03 * um, seed + 10);
+    auto flat_a = small_circle();
+    auto flat_b = strip();
+    flat_a.place({0.1 * um, 0.99 * um, 0.0}, 0.03 * um, seed, 0.3);
+    flat_b.place({0, 0, 0}, 0.03 * um, seed + 20);
+    TestBody<2> round_a(meridian(Ball{.radius = um, .core_radius = 0.4 * um, .core_cells = 4, .shells = 2})),
+        round_b(meridian(Disc{.radius = 2.0 * um, .height = 0.8 * um, .core_cells = 4, .rings = 3, .layers = 3}));
+    round_a.place({0.0, 1.02 * um, 0.0}, 0.02 * um, seed);
+    round_b.place({0.0, 0.0, 0.0}, 0.02 * um, seed + 30);
+    // Without the jump at the cutoff, over which a difference reaches.
+    for (const ContactArea area : {ContactArea::reference, ContactArea::current, ContactArea::mobile})
+      for (const bool two_pass : {false, true}) {
+        LigandReceptor in_space{.cutoff = 40.0, .area = area, .two_pass = two_pass}, in_plane = in_space, around_axis = in_space;
+        worst = std::max(worst, stiffness_error<3>(in_space, a, b, 100 * seed, 3e-7 * um));
+        worst = std::max(worst, stiffness_error<2>(in_plane, flat_a, flat_b, 200 * seed, 3e-7 * um));
+        worst = std::max(worst, stiffness_error<2>(around_axis, round_a, round_b, 300 * seed, 3e-7 * um));
+      }
+    VanDerWaals in_space{.range = um}, in_plane = in_space;
+    worst = std::max(worst, stiffness_error<3>(in_space, a, b, 400 * seed, 1e-6 * um, false));
+    worst = std::max(worst, stiffness_error<2>(in_plane, flat_a, flat_b, 500 * seed, 1e-6 * um, false));
+  }
+  MESSAGE("largest relative error of the change: ", worst);
   CHECK(worst < 1e-6);
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <tactoid/contact/facet_derivatives.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
 #include <tactoid/contact/surface_transfer.hpp>
@@ -57,40 +58,19 @@ template <int D>
 double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4> x,
                   std::array<Vector3, FacetSurface<D>::corners>& gradient);
 
-/// Calls emit(i, j, K) with the second derivative of `tension` × area in the nodes of every facet. With c = ∂x/∂s × ∂x/∂t,
-/// |c| as SurfaceIntegral::size has it, m = c/|c| and dc linear in dx: d²|c| = dc·(1 − m mᵀ) dc/|c| + m·d²c. In a meridian section ∂x/∂t is 2πr along e_z.
+/// Calls emit(i, j, K) with the second derivative of `tension` × area in the nodes of every facet.
 template <int D, class Emit>
 void add_area_stiffness(const SurfaceIntegral<D>& s, const ParticleFields& body, double tension, const Emit& emit) {
-  const auto cross = [](const Vector3& v) {  // [v]ₓ w = v × w
-    Tensor3 A;
-    A << 0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0;
-    return A;
-  };
   constexpr std::size_t corners = FacetSurface<D>::corners;
   for (Index f = 0; f < s.surface.facets.size(); ++f) {
     std::array<std::array<Tensor3, corners>, corners> K;
     for (auto& row : K) row.fill(Tensor3::Zero());
     for (std::size_t p = 0; p < s.quadrature.points.size(); ++p) {
       const auto& point = s.quadrature.points[p];
-      const FacetTangents a = s.surface.tangents(f, point.local, body.position);
-      const Vector3 c = a.area_vector();
-      const double size = s.size(f, p, c);
-      const Vector3 m = c / size;
-      const Tensor3 across = (Tensor3::Identity() - m * m.transpose()) / size, turn = cross(m);
-      const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
-      std::array<Tensor3, corners> dc;
-      const auto ring = s.surface.circumference_slopes(point.local);
-      const Vector3 out = Vector3::UnitZ().cross(m);
-      for (std::size_t k = 0; k < corners; ++k) {
-        dc[k] = nt[k] * cross(a.s) - ns[k] * cross(a.t);
-        dc[k].col(0) += ring[k] * a.s.cross(Vector3::UnitZ());
-      }
+      const FacetTangents tangents = s.surface.tangents(f, point.local, body.position);
+      const auto second = area_curvatures(s.surface, point.local, tangents, s.size(f, p, tangents.area_vector()));
       for (std::size_t k = 0; k < corners; ++k)
-        for (std::size_t l = 0; l < corners; ++l) {
-          K[k][l] += tension * point.weight * (dc[k].transpose() * across * dc[l] - (ns[k] * nt[l] - nt[k] * ns[l]) * turn);
-          K[k][l].col(0) += tension * point.weight * ns[k] * ring[l] * out;
-          K[k][l].row(0) += tension * point.weight * ns[l] * ring[k] * out.transpose();
-        }
+        for (std::size_t l = 0; l < corners; ++l) K[k][l] += tension * point.weight * second[k][l];
     }
     for (std::size_t k = 0; k < corners; ++k)
       for (std::size_t l = 0; l < corners; ++l) emit(s.surface.facets[f][k], s.surface.facets[f][l], K[k][l]);

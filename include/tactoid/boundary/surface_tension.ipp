@@ -40,14 +40,8 @@ double facet_area(const SurfaceIntegral<D>& s, Index f, std::span<const Vector4>
     const Vector3 c = a.area_vector();
     const double length = s.size(f, p, c);
     area += point.weight * length;
-    const Vector3 m = c / length;
-    const Vector3 by_s = point.weight * a.t.cross(m), by_t = point.weight * m.cross(a.s);
-    const auto ns = FacetSurface<D>::shape_s(point.local), nt = FacetSurface<D>::shape_t(point.local);
-    const auto ring = s.surface.circumference_slopes(point.local);
-    for (std::size_t k = 0; k < gradient.size(); ++k) {
-      gradient[k] += ns[k] * by_s + nt[k] * by_t;
-      gradient[k][0] += ring[k] * by_t[2];
-    }
+    const auto slopes = area_slopes(s.surface, point.local, a, c / length);
+    for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] += point.weight * slopes[k];
   }
   return area;
 }

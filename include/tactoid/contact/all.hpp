@@ -3,6 +3,7 @@
 #include <tactoid/contact/closest_point.hpp>
 #include <tactoid/contact/combined.hpp>
 #include <tactoid/contact/contact.hpp>
+#include <tactoid/contact/facet_derivatives.hpp>
 #include <tactoid/contact/first_touch.hpp>
 #include <tactoid/contact/gap_law.hpp>
 #include <tactoid/contact/gaps.hpp>

@@ -110,8 +110,8 @@ struct LigandReceptor {
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
   /// At the gaps of the last call of apply; see ContactPass::emit_stiffness.
   template <class Emit>
-  void add_stiffness(const ParticleFields&, const ParticleFields&, const Emit& emit) const {
-    engine.emit_stiffness(law(), emit);
+  void add_stiffness(const ParticleFields& a, const ParticleFields& b, const Emit& emit) const {
+    engine.emit_stiffness(law(), a, b, area, emit);
   }
   /// For checkpoints: the closest points that are followed.
   template <class Archive>

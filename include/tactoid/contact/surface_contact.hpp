@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <tactoid/contact/contact.hpp>
+#include <tactoid/contact/facet_derivatives.hpp>
 #include <tactoid/contact/gap_law.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
@@ -58,15 +59,10 @@ class ContactPass {
         const auto& p = quadrature_.point(q);
         const Index f = quadrature_.facet_of(q);
         const FacetTangents x = slave_.tangents(f, p.local, slave.position);
-        const Vector3 c = x.area_vector(), m = c.normalized();
+        const Vector3 c = x.area_vector();
         a = p.weight * c.norm();
-        const Vector3 by_s = x.t.cross(m), by_t = m.cross(x.s);
-        const auto ns = FacetSurface<D>::shape_s(p.local), nt = FacetSurface<D>::shape_t(p.local);
-        const auto ring = slave_.circumference_slopes(p.local);
-        for (std::size_t k = 0; k < ns.size(); ++k) {
-          s.along[k] = (-factor * density * p.weight) * (ns[k] * by_s + nt[k] * by_t);
-          s.along[k][0] -= factor * density * p.weight * ring[k] * by_t[2];
-        }
+        const auto slopes = area_slopes(slave_, p.local, x, c.normalized());
+        for (std::size_t k = 0; k < slopes.size(); ++k) s.along[k] = (-factor * density * p.weight) * slopes[k];
       } else if (area == ContactArea::current) {
         const auto& p = quadrature_.point(q);
         const FacetTangents x = slave_.tangents(quadrature_.facet_of(q), p.local, slave.position);
@@ -123,18 +119,53 @@ class ContactPass {
     }
   }
 
-  /// Emits −∂f/∂x in the normal direction at the gaps of the last step (detail::emit_spring), negative where attraction softens.
-  /// The turning of the normal is left out.
+  /// Emits −∂f/∂x at the last step: of the gap, of the turning normal and of the area where the force depends on it; exact where the law's stiffness is.
   template <GapLaw Law, class Emit>
-  void emit_stiffness(const Law& law, double factor, const Emit& emit) const {
+  void emit_stiffness(const Law& law, const ParticleFields& slave, const ParticleFields& master, ContactArea area, double factor, const Emit& emit) const {
+    constexpr std::size_t corners = FacetSurface<D>::corners;
     const auto closest = tracker_.closest();
     for (std::size_t q = 0; q < points_.size(); ++q) {
       const double gap = closest[q].gap;
       if (!(gap < law.reach())) continue;
-      const double near = 1e-6 * std::abs(gap);
-      const double k = std::copysign(factor * states_[q].area * law.stiffness(gap), law.traction(gap - near) - law.traction(gap + near));
-      detail::emit_spring(slave_.facets[quadrature_.facet_of(q)], quadrature_.point(q).shape, master_.facets[closest[q].facet],
-                          FacetSurface<D>::shape(closest[q].local), Tensor3(k * closest[q].normal * closest[q].normal.transpose()), emit);
+      const auto& point = quadrature_.point(q);
+      const Index facet = quadrature_.facet_of(q);
+      const auto g = gap_derivatives(master_, closest[q], master.position);
+      const Vector3& n = closest[q].normal;
+      // Of the potential Φ, by the gap.
+      const double first = -law.traction(gap), near = 1e-6 * std::abs(gap);
+      const double second = std::copysign(law.stiffness(gap), law.traction(gap - near) - law.traction(gap + near));
+      // The slave's nodes move the point, the master's the surface.
+      std::array<double, 2 * corners> share;
+      std::array<std::size_t, 2 * corners> at;
+      for (std::size_t k = 0; k < corners; ++k) {
+        share[k] = point.shape[k], at[k] = 0;
+        share[corners + k] = 1.0, at[corners + k] = k + 1;
+      }
+      std::array<std::array<Tensor3, 2 * corners>, 2 * corners> K;
+      for (std::size_t k = 0; k < K.size(); ++k)
+        for (std::size_t l = 0; l < K.size(); ++l)
+          K[k][l] = states_[q].area * share[k] * share[l] * (second * g.share[at[k]] * g.share[at[l]] * n * n.transpose() + first * g.second[at[k]][at[l]]);
+      if (area != ContactArea::reference) {
+        const FacetTangents x = slave_.tangents(facet, point.local, slave.position);
+        const Vector3 c = x.area_vector();
+        const auto slopes = area_slopes(slave_, point.local, x, c.normalized());
+        for (std::size_t k = 0; k < K.size(); ++k)
+          for (std::size_t l = 0; l < corners; ++l) {
+            const Tensor3 mixed = (first * point.weight * share[k] * g.share[at[k]]) * n * slopes[l].transpose();
+            K[k][l] += mixed;
+            if (area == ContactArea::mobile) K[l][k] += mixed.transpose();
+          }
+        if (area == ContactArea::mobile) {
+          const auto curvatures = area_curvatures(slave_, point.local, x, c.norm());
+          for (std::size_t k = 0; k < corners; ++k)
+            for (std::size_t l = 0; l < corners; ++l) K[k][l] += law.potential(gap) * point.weight * curvatures[k][l];
+        }
+      }
+      const auto& from = slave_.facets[facet];
+      const auto& onto = master_.facets[closest[q].facet];
+      for (std::size_t k = 0; k < K.size(); ++k)
+        for (std::size_t l = 0; l < K.size(); ++l)
+          emit(k >= corners, k < corners ? from[k] : onto[k - corners], l >= corners, l < corners ? from[l] : onto[l - corners], Tensor3(factor * K[k][l]));
     }
   }
 
@@ -212,11 +243,11 @@ class SurfaceContactEngine {
 
   /// Emits the stiffness of both passes; see ContactPass::emit_stiffness.
   template <GapLaw Law, class Emit>
-  void emit_stiffness(const Law& law, const Emit& emit) const {
+  void emit_stiffness(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area, const Emit& emit) const {
     const double factor = back_.empty() ? 1.0 : 0.5;
     const auto turned = [&](bool of_b, Index i, bool by_b, Index j, const Tensor3& k) { emit(!of_b, i, !by_b, j, k); };
-    forth_.visit([&](const auto& pass) { pass.emit_stiffness(law, factor, emit); });
-    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.emit_stiffness(law, factor, turned); });
+    forth_.visit([&](const auto& pass) { pass.emit_stiffness(law, a, b, area, factor, emit); });
+    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.emit_stiffness(law, b, a, area, factor, turned); });
   }
 
   /// The pass of A's facets: closest points, quadrature, surfaces, as f(const ContactPass<D>&).
@@ -262,8 +293,8 @@ struct SurfaceContact {
   }
   /// At the gaps of the last call of apply; see ContactPass::emit_stiffness.
   template <class Emit>
-  void add_stiffness(const ParticleFields&, const ParticleFields&, const Emit& emit) const {
-    engine.emit_stiffness(law, emit);
+  void add_stiffness(const ParticleFields& a, const ParticleFields& b, const Emit& emit) const {
+    engine.emit_stiffness(law, a, b, area, emit);
   }
   /// For checkpoints: the closest points that are followed.
   template <class Archive>

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <tactoid/contact/facet_derivatives.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
 #include <tactoid/contact/tracking.hpp>
@@ -68,6 +69,21 @@ struct VanDerWaals {
 
   /// G/d₀ e^{−g/d₀} at the least gap, 1/s²; with `reaction` for the surface of B too.
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
+
+  /// Of each particle of A on itself, at the gaps of the last call of apply. That the surface of B moves is left out: matrices stay as sparse as
+  /// without it, and the surface moves little in the range of the force.
+  template <class Emit>
+  void add_stiffness(const ParticleFields& a, const ParticleFields& b, const Emit& emit) const {
+    particles.visit([&](const auto& p) {
+      const auto closest = p.tracker.closest();
+      for (std::size_t i = 0; i < closest.size(); ++i) {
+        const double gap = closest[i].gap, pull = a.mass[i] * strength * std::exp(-std::max(gap, 0.0) / range);
+        const auto g = gap_derivatives(p.master, closest[i], b.position);
+        const Tensor3 fade = (gap > 0.0 ? 1.0 / range : 0.0) * closest[i].normal * closest[i].normal.transpose();
+        emit(false, static_cast<Index>(i), false, static_cast<Index>(i), Tensor3(pull * (g.second[0][0] - fade)));
+      }
+    });
+  }
 
   /// Signed gap of every particle of A (inside and on the surface) at the last call of apply, m.
   [[nodiscard]] std::span<const double> gaps() const;
