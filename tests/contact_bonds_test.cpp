@@ -302,6 +302,25 @@ TEST_CASE("Bonds conserve momentum and angular momentum, and follow their energy
   }
 }
 
+TEST_CASE("Receptors of the second body: the same as the bodies in the other order") {
+  const TetheredBonds law{.rest_length = 5.0 * nm, .kinetics = {.off_rate = 0.0}};
+  Pair pair(law);
+  TetheredBonds second = law;
+  second.sampled = ContactSide::second;
+  auto cube = pair.cube.fields(), slab = pair.slab.fields();
+  second.initialize(pair.slab.cloud, slab, pair.cube.cloud, cube);
+  for (int k = 0; k < 3; ++k) {
+    pair.pull(Vector3(3.0 * k * nm, 0.0, (8.0 + k) * nm), 1e-6 * k);
+    const Field on_cube = pair.cube.force, on_slab = pair.slab.force;
+    cube = pair.cube.fields(), slab = pair.slab.fields();
+    CHECK(second.apply(slab, cube, 1e-6 * k).potential == pair.energy.potential);
+    CHECK(pair.cube.force == on_cube);
+    CHECK(pair.slab.force == on_slab);
+    CHECK(second.stiffness_rate(slab, cube) == pair.bonds.stiffness_rate(cube, slab));
+  }
+  CHECK(second.bonds() > 0.0);
+}
+
 TEST_CASE("The same bits for any number of threads, and after a restart") {
   const auto last = [](int threads, bool restart) {
     set_thread_count(threads);
@@ -387,6 +406,7 @@ TEST_CASE("Wrong parameters of bonds are refused") {
   CHECK(refused({.kinetics = {.slip_force = 0.0}}, "BondKinetics.slip_force"));
   CHECK(refused({.kinetics = {.catch_rate = -1.0}}, "BondKinetics.catch_rate"));
   CHECK(refused({.kinetics = {.catch_force = infinite}}, "BondKinetics.catch_force"));
+  CHECK(refused({.sampled = ContactSide::both}, "TetheredBonds.sampled"));
 }
 
 }  // namespace contact_bonds_test

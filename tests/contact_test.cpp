@@ -349,7 +349,7 @@ TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positio
     // Gaps from a penetration outwards; both surfaces rough, so that edges and corners are closest too.
     a.place({0.1 * um, 0.07 * um, 0.9 * um}, 0.03 * um, seed, 0.3, Vector3(1, 0.3, 0.5));
     b.place({0, 0, 0}, 0.03 * um, seed + 10);
-    LigandReceptor one{}, two{.two_pass = true, .points_per_direction = 3};
+    LigandReceptor one{}, two{.sampled = ContactSide::both, .points_per_direction = 3};
     worst = std::max(worst, consistency<3>(one, a, b, 100 * seed, 3e-7 * um));
     const auto& closest = one.engine.visit([](const auto& pass) {
       int below = 0, rim = 0;
@@ -359,6 +359,19 @@ TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positio
     CHECK(closest.first > 0);
     CHECK(closest.second > 0);
     worst = std::max(worst, consistency<3>(two, a, b, 200 * seed, 3e-7 * um));
+    // Sampled on the second body it is the contact of the bodies in the other order.
+    LigandReceptor second{.sampled = ContactSide::second}, exchanged{};
+    worst = std::max(worst, consistency<3>(second, a, b, 250 * seed, 3e-7 * um));
+    auto fa = a.fields(), fb = b.fields();
+    const TermEnergy energy = second.apply(fa, fb, 0.0);
+    const Field on_a = a.force, on_b = b.force;
+    CHECK(second.engine.visit([](const auto& pass) { return pass.quadrature().size(); }) == 4 * b.cloud.facets.size());
+    fa = a.fields(), fb = b.fields();
+    exchanged.initialize(b.cloud, fb, a.cloud, fa);
+    CHECK(exchanged.apply(fb, fa, 0.0).potential == energy.potential);
+    CHECK(a.force == on_a);
+    CHECK(b.force == on_b);
+    CHECK(second.stiffness_rate(fa, fb) == exchanged.stiffness_rate(fb, fa));
     auto a2 = small_circle();
     auto b2 = strip();
     a2.place({0.1 * um, 0.99 * um, 0.0}, 0.03 * um, seed, 0.3);
@@ -379,7 +392,7 @@ TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positio
   CHECK(worst < 1e-6);
 }
 
-TEST_CASE("the stiffness of a contact is how its forces change: gaps, normals that turn, areas; in one and two passes, in 3D, in a plane, around an axis") {
+TEST_CASE("the stiffness of a contact is how its forces change: gaps, normals that turn, areas; sampled on one or both bodies, in 3D, in a plane, around an axis") {
   double worst = 0.0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     auto a = small_ball(3, 2), b = slab(7);
@@ -395,8 +408,8 @@ TEST_CASE("the stiffness of a contact is how its forces change: gaps, normals th
     round_b.place({0.0, 0.0, 0.0}, 0.02 * um, seed + 30);
     // Without the jump at the cutoff, over which a difference reaches.
     for (const ContactArea area : {ContactArea::reference, ContactArea::current, ContactArea::mobile})
-      for (const bool two_pass : {false, true}) {
-        LigandReceptor in_space{.cutoff = 40.0, .area = area, .two_pass = two_pass}, in_plane = in_space, around_axis = in_space;
+      for (const ContactSide sampled : {ContactSide::first, ContactSide::second, ContactSide::both}) {
+        LigandReceptor in_space{.cutoff = 40.0, .area = area, .sampled = sampled}, in_plane = in_space, around_axis = in_space;
         worst = std::max(worst, stiffness_error<3>(in_space, a, b, 100 * seed, 3e-7 * um));
         worst = std::max(worst, stiffness_error<2>(in_plane, flat_a, flat_b, 200 * seed, 3e-7 * um));
         worst = std::max(worst, stiffness_error<2>(around_axis, round_a, round_b, 300 * seed, 3e-7 * um));
@@ -453,12 +466,12 @@ TEST_CASE("van der Waals: the force of eqn (12) above, and no flip below, a plan
 }
 
 TEST_CASE("momentum and angular momentum of a pair are conserved to round-off") {
-  for (const bool two_pass : {false, true})
+  for (const ContactSide sampled : {ContactSide::first, ContactSide::second, ContactSide::both})
     for (const ContactArea area : {ContactArea::reference, ContactArea::current, ContactArea::mobile}) {
       auto a = small_ball(3, 2), b = slab(7);
       a.place({0.1 * um, 0.07 * um, 0.99 * um}, 0.03 * um, 5, 0.3, Vector3(1, 0.3, 0.5));
       b.place({0, 0, 0}, 0.03 * um, 6);
-      Combined both{LigandReceptor{.area = area, .two_pass = two_pass}, VanDerWaals{.reaction = true}};
+      Combined both{LigandReceptor{.area = area, .sampled = sampled}, VanDerWaals{.reaction = true}};
       auto fa = a.fields(), fb = b.fields();
       both.initialize(a.cloud, fa, b.cloud, fb);
       both.apply(fa, fb, 0.0);

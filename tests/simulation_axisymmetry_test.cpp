@@ -305,7 +305,7 @@ TEST_CASE("Contact of rings: the gradient of its energy, action and reaction alo
     CHECK(gradient_error(base, energy, on_base) < 1e-4);
   };
   contact(LigandReceptor{.range = 1e-6});
-  contact(LigandReceptor{.range = 1e-6, .two_pass = true});
+  contact(LigandReceptor{.range = 1e-6, .sampled = ContactSide::both});
   contact(VanDerWaals{.range = 5e-6, .reaction = true});
 
   // A flat block on a plate: the whole area presses.

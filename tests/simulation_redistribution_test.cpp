@@ -323,7 +323,7 @@ TEST_CASE("A drop whose surface particles were crowded relaxes at the rate of th
 namespace {
 
 /// A cell that adheres and is tethered to a block.
-auto adhering(std::optional<Redistribution> redistribution, bool stochastic = false, double distortion = 1.02) {
+auto adhering(std::optional<Redistribution> redistribution, bool stochastic = false, double distortion = 1.02, ContactSide sampled = ContactSide::first) {
   auto body = cell();
   for (std::size_t i = 0; i < body.size(); ++i) {
     const Vector4& X = body.reference()[i];
@@ -333,8 +333,8 @@ auto adhering(std::optional<Redistribution> redistribution, bool stochastic = fa
              Materials{Region{"body", NeoHookean{.mu = 1e4, .lambda = 1e5}}}};
   const auto bottom = select(block.cloud(), [](const Point<2>& X) { return X[1] < -1.99 * um; });
   return Simulation{Bodies{std::move(body), std::move(block)},
-                    Contacts{between<0, 1>(LigandReceptor{}), between<0, 1>(VanDerWaals{.strength = 100.0}), between<0, 1>(ContactAnchoring{}),
-                             between<0, 1>(TetheredBonds{.capture_distance = 150e-9, .kinetics = {.on_rate = 10.0, .off_rate = 1.0}, .stochastic = stochastic})},
+                    Contacts{between<0, 1>(Combined{LigandReceptor{.sampled = sampled}, VanDerWaals{.strength = 100.0}}), between<0, 1>(ContactAnchoring{}),
+                             between<0, 1>(TetheredBonds{.capture_distance = 150e-9, .kinetics = {.on_rate = 10.0, .off_rate = 1.0}, .stochastic = stochastic, .sampled = sampled})},
                     Boundaries{on<0>(SurfaceTension{.smoothing = 0.05}), on<1>(fixed(bottom))},
                     UpdatedReference{ImplicitDynamics{.max_time_step = 0.02}, distortion, 2, redistribution}};
 }
@@ -344,7 +344,7 @@ auto adhering(std::optional<Redistribution> redistribution, bool stochastic = fa
 TEST_CASE("Bonds are carried along: their number and what they store stay, and so does the surface's reference area") {
   auto s = adhering({}, false, 1e9);
   s.run(0.2);
-  TetheredBonds tethers = s.contact<3>();
+  TetheredBonds tethers = s.contact<2>();
   REQUIRE(tethers.bonds() > 0.05);
   const auto sum = [](std::span<const double> list) {
     double total = 0.0;
@@ -391,6 +391,48 @@ TEST_CASE("Bonds are carried along: their number and what they store stay, and s
   CHECK(worst < 0.1);
 }
 
+TEST_CASE("Receptors of the other surface keep their bonds, and their anchors stay in their places of the surface along which particles slide") {
+  auto s = adhering({}, false, 1e9, ContactSide::second);
+  s.run(0.2);
+  TetheredBonds tethers = s.contact<2>();
+  REQUIRE(tethers.bonds() > 0.05);
+  const auto anchors = [&] {
+    return tethers.sites.visit([](const auto& sites) {
+      std::vector<Vector4> places;
+      for (std::size_t k = 0; k < sites.size(); ++k)
+        if (sites.bound()[k] > 0.0) places.push_back(sites.place(k) - sites.extension()[k]);
+      return places;
+    });
+  };
+  const auto bound = [&] { return tethers.sites.visit([](const auto& sites) { return std::vector<double>(sites.bound().begin(), sites.bound().end()); }); };
+  auto& body = s.body<0>();
+  PointCloud<2> now = present(body);
+  const SurfaceTransfer transfer = redistribute(now, body.cloud(), std::vector<char>(now.size(), 0), tactoid::volume(now), Redistribution{});
+  Field x(now.size());
+  double slid = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = pad(now.positions[i]), slid = std::max(slid, (x[i] - s.particles<0>().position[i]).norm());
+  ParticleFields a = s.particles<0>();
+  const std::vector<Vector4> before = anchors();
+  const std::vector<double> bonds = bound();
+  const double energy = tethers.apply(a, s.particles<1>(), s.time()).potential;
+  a.position = x;
+  tethers.redistribute(transfer, a, s.particles<1>());
+  CHECK(bound() == bonds);
+  CHECK(tethers.apply(a, s.particles<1>(), s.time()).potential == relative(energy).epsilon(1e-12));  // no time has gone by, no work is done
+  const std::vector<Vector4> after = anchors();
+  REQUIRE(after.size() == before.size());
+  double moved = 0.0;
+  for (std::size_t k = 0; k < after.size(); ++k) moved = std::max(moved, (after[k] - before[k]).norm());
+  MESSAGE("particles slid by ", slid / um, " um, anchors moved by ", moved / um, " um");
+  CHECK(slid > 0.02 * um);
+  CHECK(moved < 0.1 * slid);
+
+  auto run = adhering(Redistribution{}, false, 1.02, ContactSide::second);
+  run.run(0.3);
+  CHECK(run.integrator().reference.updates >= 1);
+  CHECK(run.contact<2>().bonds() > 0.05);
+}
+
 TEST_CASE("A run with redistribution keeps momentum and volume, and goes on with the same bits after a restart and on any number of threads") {
   const auto run = [](auto& simulation, double end, int threads) {
     const int before = thread_count();
@@ -414,7 +456,7 @@ TEST_CASE("A run with redistribution keeps momentum and volume, and goes on with
   CHECK(resumed.body<0>().velocity == whole.body<0>().velocity);
   CHECK(resumed.body<0>().director == whole.body<0>().director);
   CHECK(resumed.body<0>().masses() == whole.body<0>().masses());
-  CHECK(resumed.contact<3>().bonds() == whole.contact<3>().bonds());
+  CHECK(resumed.contact<2>().bonds() == whole.contact<2>().bonds());
   CHECK(resumed.ledger().reference_updates == whole.ledger().reference_updates);
 
   // Explicit steps of a free drop: momentum through many updates.

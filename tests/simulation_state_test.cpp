@@ -103,7 +103,7 @@ TEST_CASE("A restored simulation goes on with the same bits: a meridian section"
               Rkpm<2>{}, NodalCentroids{}, Materials{Region{"nucleus", ModifiedMooneyRivlin{}}, Region{"cytoplasm", ModifiedMooneyRivlin{}}}};
     Body base{"base", meridian(Disc{.radius = 8e-6, .height = 2e-6, .core_cells = 6, .rings = 6, .layers = 4}), Rkpm<2>{}, NodalCentroids{},
               Materials{Region{"body", YangVisco<>{}}}};
-    return Simulation{Bodies{std::move(cell), std::move(base)}, Contacts{between<0, 1>(Combined{LigandReceptor{.two_pass = true}, VanDerWaals{}})},
+    return Simulation{Bodies{std::move(cell), std::move(base)}, Contacts{between<0, 1>(Combined{LigandReceptor{.sampled = ContactSide::both}, VanDerWaals{}})},
                       Boundaries{on<0>(CurvatureSurfaceTension{})}, CentralDifference{}};
   };
   check_resumed(compose, 0.1e-6, 0.3e-6);

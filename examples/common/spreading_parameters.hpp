@@ -67,7 +67,8 @@ struct SpreadingParameters {
   double bond_density = 500e12;       ///< N_b, 1/m²
   double binding_energy = 0.024e-18;  ///< σ_b, J
   double bond_range = 100e-9;         ///< ε, m
-  int contact_points = 2;             ///< quadrature points along each side of a facet of the cell, for its bonds
+  std::string bonds_on = "cell";      ///< whose surface bonds are counted and sampled on: cell or substrate
+  int contact_points = 2;             ///< quadrature points along each side of a facet of that surface, for bonds
   std::string bond_area = "reference";  ///< bonds are as many per area: reference (of the matter) or mobile (of the present surface, which is a fluid)
   double surface_tension = 0.072e-3;  ///< σ₀, N/m
   double surface_smoothing = 0.0;     ///< share of its size below which a facet's tension fades
@@ -142,7 +143,8 @@ struct SpreadingParameters {
     options.add_quantity("binding-energy", &binding_energy, Quantity::energy, Range::non_negative(),
                          "Energy of a bond");
     options.add_quantity("bond-range", &bond_range, Quantity::length, Range::positive(), "Range epsilon of the bonds");
-    options.add("contact-points", &contact_points, Range::between(1, 4), "Quadrature points along each side of a facet of the cell, for bonds");
+    options.add_choice("bonds-on", &bonds_on, {"cell", "substrate"}, "Whose surface bonds are counted and sampled on, ligand-receptor bonds and tethers");
+    options.add("contact-points", &contact_points, Range::between(1, 4), "Quadrature points along each side of a facet of that surface, for bonds");
     options.add_choice("bond-area", &bond_area, {"reference", "mobile"},
                        "Bonds are as many per area of the matter, or per present area of a fluid surface, whose tension they lower");
     options.add_quantity("surface-tension", &surface_tension, Quantity::surface_tension, Range::non_negative(),
@@ -255,9 +257,10 @@ struct SpreadingParameters {
   [[nodiscard]] NodalCentroids quadrature() const {
     return {.solid_ratio = hourglass, .fluid_modulus = fluid_hourglass, .fluid_viscosity = fluid_hourglass_viscosity};
   }
+  [[nodiscard]] ContactSide bond_side() const { return bonds_on == "cell" ? ContactSide::first : ContactSide::second; }
   [[nodiscard]] LigandReceptor ligand_receptor() const {
     return {.bond_density = bond_density, .binding_energy = binding_energy, .range = bond_range,
-            .area = bond_area == "mobile" ? ContactArea::mobile : ContactArea::reference, .points_per_direction = contact_points};
+            .area = bond_area == "mobile" ? ContactArea::mobile : ContactArea::reference, .sampled = bond_side(), .points_per_direction = contact_points};
   }
   [[nodiscard]] VanDerWaals van_der_waals_force() const {
     return {.strength = van_der_waals, .range = van_der_waals_range, .reaction = van_der_waals_reaction};

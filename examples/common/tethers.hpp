@@ -16,7 +16,7 @@ namespace tactoid {
 /// Tethers between cell and substrate, which a study adds to SpreadingCase. Rates are those of real bonds, times `rate_factor`.
 struct Tethers {
   std::string mode = "mean";           ///< off, mean (field) or stochastic
-  double density = 300e12;             ///< receptors per area of the cell, 1/m²
+  double density = 300e12;             ///< receptors per area of the surface that has them, 1/m²
   double stiffness = 1e-3;             ///< κ, N/m
   double length = 50e-9;               ///< ℓ at rest, m
   double capture_distance = 60e-9;     ///< gap below which bonds form, m
@@ -27,11 +27,12 @@ struct Tethers {
   double catch_force = 5.38e-12;       ///< F_c, N
   double rate_factor = 1e7;            ///< how much faster than in a cell bonds form and break here
   std::uint64_t seed = 1;              ///< of the stochastic ones
-  int points = 2;                      ///< along each side of a facet of the cell
+  ContactSide side = ContactSide::first;  ///< who has the receptors: the cell, or the substrate
+  int points = 2;                      ///< along each side of a facet
 
   void add_to(Options& options) {
     options.add_choice("tethers", &mode, {"off", "mean", "stochastic"}, "Bonds that hold in the tangential direction: none, in the mean field, one by one");
-    options.add_quantity("tether-density", &density, Quantity::number_density, Range::positive(), "Receptors per area of the cell");
+    options.add_quantity("tether-density", &density, Quantity::number_density, Range::positive(), "Receptors per area of the cell, or of the substrate (bonds-on)");
     options.add_quantity("tether-stiffness", &stiffness, Quantity::surface_tension, Range::non_negative(), "Stiffness of a bond");
     options.add_quantity("tether-length", &length, Quantity::length, Range::non_negative(), "Length of a bond at rest");
     options.add_quantity("capture-distance", &capture_distance, Quantity::length, Range::positive(), "Gap below which bonds form");
@@ -58,7 +59,13 @@ struct Tethers {
                          .catch_force = catch_force},
             .stochastic = mode == "stochastic",
             .seed = seed,
-            .points_per_direction = points};
+            .points_per_direction = points,
+            .sampled = side};
+  }
+  /// The surface and the quadrature of the other bonds.
+  void follow(const SpreadingParameters& p) {
+    side = p.bond_side();
+    points = p.contact_points;
   }
   [[nodiscard]] auto contacts() const { return std::tuple(between<0, 1>(law())); }
 
@@ -75,10 +82,12 @@ struct Tethers {
       for (std::size_t s = 0; s < sites.size(); ++s) {
         const double n = sites.bound()[s], r = sites.extension()[s].norm();
         if (!(n > 0.0) || !(r > 0.0)) continue;
-        const int side = sites.place(s)[0] > 0.0 ? 0 : 1;
-        const Vector4 on_substrate = (n * tethers.tension(r) / r) * sites.extension()[s];
-        bonds[side] += n;
-        pull[side] += side == 0 ? -on_substrate[0] : on_substrate[0];
+        const int half = sites.place(s)[0] > 0.0 ? 0 : 1;
+        // An extension leads from the anchor to the site.
+        const double toward_cell = tethers.sampled == ContactSide::first ? 1.0 : -1.0;
+        const Vector4 on_substrate = (toward_cell * n * tethers.tension(r) / r) * sites.extension()[s];
+        bonds[half] += n;
+        pull[half] += half == 0 ? -on_substrate[0] : on_substrate[0];
         tension += n * tethers.tension(r);
         across += on_substrate[1];
       }

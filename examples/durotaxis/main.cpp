@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
     p.add_to(options);
     run.add_to(options);
     if (!options.parse(argc, argv)) return 0;
+    tethers.follow(p);
     run(SpreadingCase{p, p.graded_substrate(gradient), tethers}, options);
     return 0;
   });

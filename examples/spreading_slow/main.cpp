@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     integrator.newton_tolerance = 1e-2 * integrator.tolerance;
     // E = 3 × the shear modulus 2 (C₁ + C₂): λ is large.
     const double factor = elasticity / (6.0 * (p.substrate_c1 + p.substrate_c2));
-    tethers.points = p.contact_points;
+    tethers.follow(p);
     run(SlowCase{{p, p.substrate_law(factor), tethers}, integrator}, options);
     return 0;
   });

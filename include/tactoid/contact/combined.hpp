@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <tactoid/contact/contact.hpp>
+#include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 
 namespace tactoid {
@@ -18,6 +19,7 @@ struct Combined {
   /// As the parts do.
   static constexpr Reads reads_a = ((reads_a_of<Parts> == Reads::facets) && ...) ? Reads::facets : Reads::all;
   static constexpr Reads reads_b = ((reads_b_of<Parts> == Reads::facets) && ...) ? Reads::facets : Reads::all;  ///< see above
+  static constexpr bool follows_redistribution = (tactoid::follows_redistribution<Parts> && ...);  ///< where all parts do
   std::tuple<Parts...> parts;  ///< in the order given
 
   Combined() = default;
@@ -52,6 +54,23 @@ struct Combined {
       if constexpr (ContactWithStiffness<std::decay_t<decltype(part)>>) part.add_stiffness(a, b, emit);
     };
     std::apply([&](const auto&... part) { (add(part), ...); }, parts);
+  }
+
+  /// Tells the parts that keep something of A's surface.
+  void redistribute(const SurfaceTransfer& surface, const ParticleFields& a, const ParticleFields& b)
+    requires((tactoid::follows_redistribution<Parts> || tells_of_redistribution<Parts>) && ...)
+  {
+    const auto tell = [&](auto& part) {
+      if constexpr (tells_of_redistribution<std::decay_t<decltype(part)>>) part.redistribute(surface, a, b);
+    };
+    std::apply([&](auto&... part) { (tell(part), ...); }, parts);
+  }
+  /// Throws ParameterError where a part does.
+  void require_redistributable() const {
+    const auto look_at = [](const auto& part) {
+      if constexpr (requires { part.require_redistributable(); }) part.require_redistributable();
+    };
+    std::apply([&](const auto&... part) { (look_at(part), ...); }, parts);
   }
 
   /// For checkpoints: those of the parts.

@@ -54,6 +54,12 @@ concept ContactWithStiffness = requires(const C& c, const ParticleFields& a, con
 
 namespace detail {
 
+/// The same emit for who takes the bodies in the other order.
+template <class Emit>
+[[nodiscard]] auto exchanged(const Emit& emit) {
+  return [&emit](bool of_b, Index i, bool by_b, Index j, const Tensor3& stiffness) { emit(!of_b, i, !by_b, j, stiffness); };
+}
+
 /// Emits the stiffness k of a spring between a place on a facet of A and one on a facet of B, from their shape functions.
 template <class FacetA, class ShapeA, class FacetB, class ShapeB, class Emit>
 void emit_spring(const FacetA& on_a, const ShapeA& na, const FacetB& on_b, const ShapeB& nb, const Tensor3& k, const Emit& emit) {

@@ -73,7 +73,7 @@ struct LigandReceptorLaw {
 };
 
 /// Ligand–receptor adhesion between the surfaces of bodies A and B (see LigandReceptorLaw): a Contact in 2 and 3
-/// dimensions. The gap is measured from quadrature points on A's facets to the nearest point of B's deformed
+/// dimensions. The gap is measured from quadrature points on A's facets (or B's: `sampled`) to the nearest point of the other deformed
 /// surface; the force on A has its exact opposite on B.
 struct LigandReceptor {
   static constexpr Reads reads_a = Reads::facets;  ///< the surface of A
@@ -83,8 +83,8 @@ struct LigandReceptor {
   double range = 100e-9;                      ///< ε, gap of lowest energy, m
   double floor = 0.3;                         ///< gap below which the traction is linear, × ε, in (0, 1)
   double cutoff = 20.0;                       ///< gap beyond which there is no force, × ε, > √(5/3)
-  ContactArea area = ContactArea::reference;  ///< bonds per reference or per current area of A, or mobile
-  bool two_pass = false;                      ///< both bodies' facets are sampled, with half the weight each
+  ContactArea area = ContactArea::reference;  ///< bonds per reference or per current area, or mobile
+  ContactSide sampled = ContactSide::first;   ///< on whose facets bonds are
   int points_per_direction = 2;               ///< Gauss points along each side of a facet, 1 to 4
   SurfaceContactEngine engine{};              ///< set by initialize()
 
@@ -100,12 +100,8 @@ struct LigandReceptor {
                   const ParticleFields& b);
   /// See SurfaceContactEngine.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double);
-  /// Bonds are carried along with the surface, also where particles slide along it: their number stays.
+  /// Bonds are carried along with A's surface, also where particles slide along it: their number stays. Those on B's stay where they are.
   void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&);
-  /// Throws ParameterError for two passes.
-  void require_redistributable() const {
-    if (two_pass) throw ParameterError("Redistribution: LigandReceptor.two_pass keeps particles where they are.");
-  }
   /// Bound of ω² at the present gaps, 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
   /// At the gaps of the last call of apply; see ContactPass::emit_stiffness.

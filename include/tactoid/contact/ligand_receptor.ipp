@@ -30,7 +30,7 @@ TACTOID_INLINE double LigandReceptor::stiffness_rate(const ParticleFields& a, co
 template <int D>
   requires(D >= 2)
 void LigandReceptor::initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b, const ParticleFields& b) {
-  engine.initialize<D>(law(), cloud_a, a, cloud_b, b, points_per_direction, two_pass);
+  engine.initialize<D>(law(), cloud_a, a, cloud_b, b, points_per_direction, sampled);
 }
 
 }  // namespace tactoid

@@ -28,6 +28,14 @@ enum class ContactArea {
               ///< which Young's equation needs
 };
 
+/// On whose facets the gaps of bodies A and B are sampled, and bonds counted. Forces are exact gradients in each case; they jump where the nearest
+/// facet of the *other* surface changes in a concave place. So sample the surface that is hollow, or that carries the ligands, against the one that is round.
+enum class ContactSide {
+  first,   ///< A's: bonds per area of A
+  second,  ///< B's: bonds per area of B
+  both     ///< both, with half the weight each
+};
+
 /// One side of a contact: the quadrature points on the facets of one body (the slave) against the facets of the
 /// other (the master). The force f = A_q t(g) n at a point is handed to the slave's nodes by its facet's shape
 /// functions, its opposite to the master's nodes by the shape functions at the closest point; since g is
@@ -203,57 +211,54 @@ class ContactPass {
   std::vector<State> states_;
 };
 
-/// The passes of a contact: body A's facets against B's, and, if asked, B's against A's with half the weight each.
+/// The passes of a contact: body A's facets against B's, B's against A's, or both with half the weight each.
 class SurfaceContactEngine {
  public:
   /// Validates the law and builds the passes; throws what they throw.
   template <int D, GapLaw Law>
   void initialize(const Law& law, const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
-                  const ParticleFields& b, int points_per_direction, bool two_pass) {
+                  const ParticleFields& b, int points_per_direction, ContactSide sampled) {
     law.validate();
-    forth_.emplace<D>().initialize(cloud_a, a, cloud_b, b, points_per_direction, law.reach());
-    back_ = {};
-    if (two_pass) back_.emplace<D>().initialize(cloud_b, b, cloud_a, a, points_per_direction, law.reach());
+    forth_ = back_ = {};
+    if (sampled != ContactSide::second) forth_.emplace<D>().initialize(cloud_a, a, cloud_b, b, points_per_direction, law.reach());
+    if (sampled != ContactSide::first) back_.emplace<D>().initialize(cloud_b, b, cloud_a, a, points_per_direction, law.reach());
   }
 
-  /// Adds the forces of both passes; returns their energy, and the power of growing areas.
+  /// Adds the forces of the passes; returns their energy, and the power of growing areas.
   template <GapLaw Law>
   TermEnergy apply(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area) {
-    const double factor = back_.empty() ? 1.0 : 0.5;
-    TermEnergy total = forth_.visit([&](auto& pass) { return pass.apply(law, a, b, area, factor); });
-    if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.apply(law, b, a, area, factor); });
+    TermEnergy total;
+    if (first_sampled()) total += forth_.visit([&](auto& pass) { return pass.apply(law, a, b, area, factor()); });
+    if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.apply(law, b, a, area, factor()); });
     return total;
   }
 
-  /// A's particles slid along its surface; see ContactPass.
+  /// A's particles slid along its surface; see ContactPass. Bonds that are counted on B stay where they are.
   void redistribute(const SurfaceTransfer& surface);
 
   /// Gershgorin's bound of ω² at the gaps of the last call of apply, 1/s².
   template <GapLaw Law>
   double stiffness_rate(const Law& law, const ParticleFields& a, const ParticleFields& b) const {
-    const double factor = back_.empty() ? 1.0 : 0.5;
     std::vector<double> sum_a(a.mass.size(), 0.0), sum_b(b.mass.size(), 0.0);
-    forth_.visit([&](const auto& pass) { pass.add_stiffness(law, factor, sum_a, sum_b); });
-    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.add_stiffness(law, factor, sum_b, sum_a); });
+    if (first_sampled()) forth_.visit([&](const auto& pass) { pass.add_stiffness(law, factor(), sum_a, sum_b); });
+    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.add_stiffness(law, factor(), sum_b, sum_a); });
     double rate = 0.0;
     for (std::size_t i = 0; i < sum_a.size(); ++i) rate = std::max(rate, sum_a[i] / a.mass[i]);
     for (std::size_t i = 0; i < sum_b.size(); ++i) rate = std::max(rate, sum_b[i] / b.mass[i]);
     return rate;
   }
 
-  /// Emits the stiffness of both passes; see ContactPass::emit_stiffness.
+  /// Emits the stiffness of the passes; see ContactPass::emit_stiffness.
   template <GapLaw Law, class Emit>
   void emit_stiffness(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area, const Emit& emit) const {
-    const double factor = back_.empty() ? 1.0 : 0.5;
-    const auto turned = [&](bool of_b, Index i, bool by_b, Index j, const Tensor3& k) { emit(!of_b, i, !by_b, j, k); };
-    forth_.visit([&](const auto& pass) { pass.emit_stiffness(law, a, b, area, factor, emit); });
-    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.emit_stiffness(law, b, a, area, factor, turned); });
+    if (first_sampled()) forth_.visit([&](const auto& pass) { pass.emit_stiffness(law, a, b, area, factor(), emit); });
+    if (!back_.empty()) back_.visit([&](const auto& pass) { pass.emit_stiffness(law, b, a, area, factor(), detail::exchanged(emit)); });
   }
 
-  /// The pass of A's facets: closest points, quadrature, surfaces, as f(const ContactPass<D>&).
+  /// The pass of A's facets (of B's, where these alone are sampled): closest points, quadrature, surfaces, as f(const ContactPass<D>&).
   template <class F>
   decltype(auto) visit(F&& f) const {
-    return forth_.visit(std::forward<F>(f));
+    return (first_sampled() ? forth_ : back_).visit(std::forward<F>(f));
   }
 
   /// For checkpoints: those of the passes.
@@ -264,6 +269,9 @@ class SurfaceContactEngine {
   }
 
  private:
+  [[nodiscard]] bool first_sampled() const { return !forth_.empty() || back_.empty(); }  // before initialize() too: visit() throws then
+  [[nodiscard]] double factor() const { return forth_.empty() || back_.empty() ? 1.0 : 0.5; }
+
   PerDimension<ContactPass> forth_, back_;
 };
 
@@ -274,7 +282,7 @@ struct SurfaceContact {
   static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
   Law law{};                                  ///< of the gap
   ContactArea area = ContactArea::reference;  ///< what the law's traction is per
-  bool two_pass = false;                      ///< both bodies' facets are sampled, with half the weight each
+  ContactSide sampled = ContactSide::first;   ///< on whose facets
   int points_per_direction = 2;               ///< Gauss points along each side of a facet, 1 to 4
   SurfaceContactEngine engine{};              ///< set by initialize()
 
@@ -283,7 +291,7 @@ struct SurfaceContact {
     requires(D >= 2)
   void initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b,
                   const ParticleFields& b) {
-    engine.initialize<D>(law, cloud_a, a, cloud_b, b, points_per_direction, two_pass);
+    engine.initialize<D>(law, cloud_a, a, cloud_b, b, points_per_direction, sampled);
   }
   /// See SurfaceContactEngine.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double) { return engine.apply(law, a, b, area); }

@@ -18,8 +18,7 @@ void ContactPass<D>::initialize(const PointCloud<D>& slave_cloud, const Particle
 }
 
 TACTOID_INLINE void SurfaceContactEngine::redistribute(const SurfaceTransfer& surface) {
-  if (!back_.empty()) throw ParameterError("Redistribution: a contact in two passes keeps its particles.");
-  forth_.visit([&](auto& pass) { pass.redistribute(surface); });
+  if (first_sampled()) forth_.visit([&](auto& pass) { pass.redistribute(surface); });
 }
 
 }  // namespace tactoid

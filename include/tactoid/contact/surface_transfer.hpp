@@ -7,6 +7,7 @@
 
 #include <tactoid/contact/surface.hpp>
 #include <tactoid/core/tensor.hpp>
+#include <tactoid/geometry/particle_fields.hpp>
 
 namespace tactoid {
 
@@ -95,6 +96,10 @@ inline constexpr bool follows_redistribution = [] {
   if constexpr (requires { T::follows_redistribution; }) return bool(T::follows_redistribution);
   else return false;
 }();
+
+/// Whether a contact is to be told when particles of its body A slid along the surface, as above.
+template <class C>
+concept tells_of_redistribution = requires(C& contact, const SurfaceTransfer& surface, const ParticleFields& fields) { contact.redistribute(surface, fields, fields); };
 
 }  // namespace tactoid
 

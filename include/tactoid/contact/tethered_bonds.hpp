@@ -9,6 +9,7 @@
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
+#include <tactoid/contact/surface_contact.hpp>
 #include <tactoid/contact/surface_transfer.hpp>
 #include <tactoid/contact/tracking.hpp>
 #include <tactoid/core/errors.hpp>
@@ -41,7 +42,8 @@ struct BondKinetics {
 
 struct TetheredBonds;
 
-/// The receptors of a body's facets, which bind to material points of another body's surface: what TetheredBonds keeps.
+/// The receptors of a body's facets, which bind to material points of another body's surface: what TetheredBonds keeps. Here A is the body with the
+/// receptors.
 ///
 /// A *site* is a place on A's facets (a quadrature point) with room for `capacity` bonds: all receptors of the quadrature point
 /// in the mean field, a single one where bonds are stochastic. It knows how many bonds hold, where they are anchored, and
@@ -72,6 +74,9 @@ class TetherSites {
   /// Receptors and bonds are carried along with A's surface, along which its particles slid; see TetheredBonds::redistribute.
   void redistribute(const TetheredBonds& law, const SurfaceTransfer& surface, const ParticleFields& a, const ParticleFields& b);
 
+  /// The particles of the surface with the anchors slid along it: anchors stay in their places.
+  void redistribute_anchors(const TetheredBonds& law, const ParticleFields& a, const ParticleFields& b);
+
   /// What a checkpoint keeps.
   template <class Archive>
   void state(Archive& archive) {
@@ -101,6 +106,9 @@ class TetherSites {
     tracker_.update(master_, points_, b.position, reach);
   }
 
+  /// Anchors each site's bonds, which start in the facet anchor_facet_, at the point of B that is nearest to where extension_ leads; clears extension_.
+  void find_anchors(const TetheredBonds& law, const ParticleFields& b);
+
   FacetSurface<D> slave_, master_;
   FacetQuadrature<D> quadrature_;
   ClosestPointTracker<D> tracker_;
@@ -119,7 +127,7 @@ class TetherSites {
   std::uint64_t calls_ = 0;  // numbers the calls for the random numbers
 };
 
-/// Bonds that hold where they formed: a Contact in which the receptors of A's surface bind to *material points* of B's, so that
+/// Bonds that hold where they formed: a Contact in which the receptors of A's surface bind to *material points* of B's (or those of B's to points of A's: `sampled`), so that
 /// bonds resist sliding as well as pulling off. (The law of a gap, such as LigandReceptor, lets surfaces slide freely.)
 ///
 /// A receptor whose nearest point of B is closer than `capture_distance` binds to that point at the rate k_on, as a spring of
@@ -139,14 +147,15 @@ class TetherSites {
 struct TetheredBonds {
   static constexpr Reads reads_a = Reads::facets;  ///< the surface of A
   static constexpr Reads reads_b = Reads::facets;  ///< the surface of B
-  double density = 1e14;             ///< receptors per reference area of A, 1/m² (plane: 1/m); > 0
+  double density = 1e14;             ///< receptors per reference area of their surface, 1/m² (plane: 1/m); > 0
   double stiffness = 1e-3;           ///< κ of a bond, N/m; >= 0
   double rest_length = 0.0;          ///< ℓ, m; >= 0
   double capture_distance = 30e-9;   ///< gap below which bonds form, m; > 0
   BondKinetics kinetics{};           ///< rates
   bool stochastic = false;           ///< every bond by itself
   std::uint64_t seed = 1;            ///< of the stochastic bonds
-  int points_per_direction = 2;      ///< quadrature points along each side of a facet of A, 1 to 4
+  int points_per_direction = 2;      ///< quadrature points along each side of a facet, 1 to 4
+  ContactSide sampled = ContactSide::first;  ///< whose surface has the receptors, A's or B's; not both
   PerDimension<TetherSites> sites{};  ///< set by initialize()
 
   /// Throws ParameterError for a value out of its range.
@@ -164,7 +173,8 @@ struct TetheredBonds {
   /// Forces of the bonds at the present positions, after the kinetics of the time since the last call.
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double time);
   /// A's particles slid along its surface. The receptors and the bonds of each part of it go to the sites that cover it now: their numbers, and
-  /// what bonds store, stay. The bonds that meet in a site have the mean of their extensions, and are anchored where that leads.
+  /// what bonds store, stay. The bonds that meet in a site have the mean of their extensions, and are anchored where that leads. Where B has the
+  /// receptors, bonds stay in their sites, and their anchors in their places of A's surface.
   void redistribute(const SurfaceTransfer& surface, const ParticleFields& a, const ParticleFields& b);
   /// Throws ParameterError for stochastic bonds: each is at its place of a facet.
   void require_redistributable() const {
@@ -175,7 +185,10 @@ struct TetheredBonds {
   /// Of the bonds that hold, at the last call of apply; exact.
   template <class Emit>
   void add_stiffness(const ParticleFields&, const ParticleFields&, const Emit& emit) const {
-    sites.visit([&](const auto& s) { s.add_stiffness(*this, emit); });
+    sites.visit([&](const auto& s) {
+      if (sampled == ContactSide::first) s.add_stiffness(*this, emit);
+      else s.add_stiffness(*this, detail::exchanged(emit));
+    });
   }
   /// Bonds that hold.
   [[nodiscard]] double bonds() const;

@@ -19,6 +19,7 @@ TACTOID_INLINE void TetheredBonds::validate() const {
   require_non_negative("TetheredBonds.rest_length", rest_length, "m");
   require_positive("TetheredBonds.capture_distance", capture_distance, "m");
   kinetics.validate();
+  if (sampled == ContactSide::both) throw ParameterError("TetheredBonds.sampled = both is not allowed: receptors are on the first or on the second body.");
 }
 
 TACTOID_INLINE double TetheredBonds::bonds() const {
@@ -165,10 +166,27 @@ void TetherSites<D>::redistribute(const TetheredBonds& law, const SurfaceTransfe
   const std::vector<Index> facet = anchor_facet_;
   for (std::size_t s = 0; s < size(); ++s) {
     bound_[s] = bound[s];
-    extension_[s] = force_[s] = Vector4::Zero();
     if (!(bound[s] > 0.0)) continue;
+    extension_[s] = extension[s] / bound[s];
+    anchor_facet_[s] = facet[from_site[s]];
+  }
+  find_anchors(law, b);
+}
+
+template <int D>
+void TetherSites<D>::redistribute_anchors(const TetheredBonds& law, const ParticleFields& a, const ParticleFields& b) {
+  locate(a, b, law.capture_distance);
+  find_anchors(law, b);
+}
+
+template <int D>
+void TetherSites<D>::find_anchors(const TetheredBonds& law, const ParticleFields& b) {
+  for (std::size_t s = 0; s < size(); ++s) {
     const Vector4& at = points_[point_of_[s]];
-    const ClosestPoint<D> place = ClosestPointTracker<D>::walk(master_, facet[from_site[s]], b.position, Vector3((at - extension[s] / bound[s]).template head<3>()));
+    const Vector4 anchor = at - extension_[s];
+    extension_[s] = force_[s] = Vector4::Zero();
+    if (!(bound_[s] > 0.0)) continue;
+    const ClosestPoint<D> place = ClosestPointTracker<D>::walk(master_, anchor_facet_[s], b.position, Vector3(anchor.template head<3>()));
     anchor_facet_[s] = place.facet;
     anchor_[s] = place.local;
     potential_[s] = law.potential((at - master_.interpolate(place.facet, place.local, b.position)).norm());
@@ -202,23 +220,27 @@ double TetherSites<D>::stiffness_rate(const TetheredBonds& law, const ParticleFi
 }
 
 TACTOID_INLINE TermEnergy TetheredBonds::apply(const ParticleFields& a, const ParticleFields& b, double time) {
-  return sites.visit([&](auto& s) { return s.apply(*this, a, b, time); });
+  return sites.visit([&](auto& s) { return sampled == ContactSide::first ? s.apply(*this, a, b, time) : s.apply(*this, b, a, time); });
 }
 
 TACTOID_INLINE void TetheredBonds::redistribute(const SurfaceTransfer& surface, const ParticleFields& a,
                                                 const ParticleFields& b) {
-  sites.visit([&](auto& s) { s.redistribute(*this, surface, a, b); });
+  sites.visit([&](auto& s) {
+    if (sampled == ContactSide::first) s.redistribute(*this, surface, a, b);
+    else s.redistribute_anchors(*this, b, a);
+  });
 }
 
 TACTOID_INLINE double TetheredBonds::stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
-  return sites.visit([&](const auto& s) { return s.stiffness_rate(*this, a, b); });
+  return sites.visit([&](const auto& s) { return sampled == ContactSide::first ? s.stiffness_rate(*this, a, b) : s.stiffness_rate(*this, b, a); });
 }
 
 template <int D>
   requires(D >= 2)
 void TetheredBonds::initialize(const PointCloud<D>& cloud_a, const ParticleFields& a, const PointCloud<D>& cloud_b, const ParticleFields& b) {
   validate();
-  sites.emplace<D>().initialize(*this, cloud_a, a, cloud_b, b);
+  if (sampled == ContactSide::first) sites.emplace<D>().initialize(*this, cloud_a, a, cloud_b, b);
+  else sites.emplace<D>().initialize(*this, cloud_b, b, cloud_a, a);
 }
 
 }  // namespace tactoid

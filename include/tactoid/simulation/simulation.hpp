@@ -372,8 +372,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         [[maybe_unused]] const auto look_at = [&](const auto& c) {
           using Pair = std::decay_t<decltype(c)>;
           using Law = std::decay_t<decltype(c.contact)>;
-          constexpr bool told = requires(Law& contact, const SurfaceTransfer& surface, const ParticleFields& fields) { contact.redistribute(surface, fields, fields); };
-          if (Pair::first == b && !told && !follows_redistribution<Law>) refuse("contact", n);
+          if (Pair::first == b && !tells_of_redistribution<Law> && !follows_redistribution<Law>) refuse("contact", n);
           if (Pair::second == b && !follows_redistribution<Law>) refuse("contact", n);
           if constexpr (requires { c.contact.require_redistributable(); })
             if (Pair::first == b || Pair::second == b) c.contact.require_redistributable();
@@ -484,7 +483,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     fields_[b].velocity = velocity;
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
-      if constexpr (requires { between.contact.redistribute(surface, fields_[b].view(), fields_[b].view()); })
+      if constexpr (tells_of_redistribution<std::decay_t<decltype(between.contact)>>)
         if (Pair::first == b) between.contact.redistribute(surface, fields_[b].view(), fields_[Pair::second].view());
     });
     for_each_boundary([&](auto& on, std::size_t) {
