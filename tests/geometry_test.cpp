@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -329,6 +330,39 @@ TEST_CASE("jitter moves the inside by a bounded, reproducible amount") {
   CHECK(square / count == test::relative(step * step / 3.0).epsilon(0.1));
   CHECK_THROWS_AS((void)jitter(cloud, 0.5), ParameterError);
   CHECK_THROWS_AS((void)jitter(cloud, -0.1), ParameterError);
+}
+
+TEST_CASE("a ball that is refined at its pole: facets there are as small as said, the surface stays a sphere, the inside follows in part") {
+  const PoleRefinement refinement{.factor = 2.0, .angle = 1.0};
+  const auto check = [&](const auto& ball, const auto& center) {
+    constexpr int D = std::decay_t<decltype(center)>::RowsAtCompileTime;
+    const auto refined = refine_pole<D>(ball, center, 2.0, refinement);
+    if constexpr (D == 3) check_measures(refined);  // the axis of a section is no surface
+    CHECK(refined.cells == ball.cells);
+    const auto boundary = on_boundary(ball);
+    double all = 0.0;
+    for (std::size_t i = 0; i < ball.size(); ++i) {
+      const Point<D> before = ball.positions[i] - center, after = refined.positions[i] - center;
+      CHECK(after.norm() == doctest::Approx(before.norm()).epsilon(1e-13));
+      const double old_angle = std::atan2(before.template head<D - 1>().norm(), -before[D - 1]), angle = std::atan2(after.template head<D - 1>().norm(), -after[D - 1]);
+      if (boundary[i] && before.norm() > 1.999) {
+        CHECK(angle == doctest::Approx(refinement.polar_angle(old_angle)).epsilon(1e-12));
+        if (old_angle < 1.999) CHECK(angle == doctest::Approx(0.5 * old_angle).epsilon(1e-12));
+      } else if (before.norm() > 0.0) {
+        CHECK(angle - old_angle == doctest::Approx(std::sqrt(0.5 * before.norm()) * (refinement.polar_angle(old_angle) - old_angle)).epsilon(1e-12));
+      }
+      all += std::abs(angle - old_angle);
+    }
+    CHECK(all > 0.0);
+  };
+  check(ball({.radius = 2.0, .core_radius = 0.8, .core_cells = 6, .shells = 4, .center = {0.0, 0.0, 0.5}}), Point<3>(0.0, 0.0, 0.5));
+  check(meridian(Ball{.radius = 2.0, .core_radius = 0.8, .core_cells = 6, .shells = 4, .center = {0.0, 0.0, 0.5}}), Point<2>(0.0, 0.5));
+  // π stays π, and the angle grows.
+  CHECK(refinement.polar_angle(std::numbers::pi) == doctest::Approx(std::numbers::pi).epsilon(1e-14));
+  for (int k = 0; k < 100; ++k) CHECK(refinement.polar_angle(0.0314 * (k + 1)) > refinement.polar_angle(0.0314 * k));
+  CHECK(contains(message_of([] { PoleRefinement{.factor = 0.5}.validate(); }), "PoleRefinement.factor = 0.5"));
+  CHECK(contains(message_of([] { PoleRefinement{.factor = 3.0, .angle = 1.0}.validate(); }), "below 0.8 pi"));
+  CHECK(contains(message_of([] { PoleRefinement{.angle = 0.0}.validate(); }), "PoleRefinement.angle"));
 }
 
 TEST_CASE("wrong parameters are named") {

@@ -36,6 +36,7 @@ struct SpreadingParameters {
   double substrate_height = 5e-6;   ///< m
   double gap = 200e-9;              ///< initial gap, m
   double resolution = 1.0;          ///< scales the numbers of cells in each direction; 1: 4341 + 16640 particles
+  double contact_refinement = 1.0;  ///< facets of the cell below 55 degrees from its lowest point are so many times as small
   double turn = 0.0;                ///< of both meshes around z, rad: what turns with it is the mesh's doing
 
   // Cell
@@ -92,6 +93,8 @@ struct SpreadingParameters {
     options.add("nucleus", &nucleus, Range::inside(0.0, 1.0), "Radius of the nucleus over that of the cell");
     options.add("resolution", &resolution, Range::between(0.2, 10.0),
                 "Scales the numbers of cells in each direction; 1 is 4341 + 16640 particles");
+    options.add("contact-refinement", &contact_refinement, Range::between(1.0, 2.5),
+                "Facets of the cell below 55 degrees from its lowest point are so many times as small, the others larger; 1: all alike");
     options.add_quantity("turn", &turn, Quantity::angle, Range::any(), "Turns the particles of both bodies around z");
     options.add_quantity("radius", &radius, Quantity::length, Range::positive(), "Radius of the cell");
     options.add_quantity("substrate-radius", &substrate_radius, Quantity::length, Range::positive(),
@@ -191,12 +194,15 @@ struct SpreadingParameters {
   /// Of the cell, in 3 dimensions or in the meridian section (D = 2), whose core has an even number of cells.
   template <int D>
   [[nodiscard]] PointCloud<D> cell_cloud() const {
+    const PoleRefinement refinement{.factor = contact_refinement};
+    Ball shape = cell_shape();
     if constexpr (D == 3) {
-      return turned(ball(cell_shape()));
+      PointCloud<3> cloud = turned(ball(shape));
+      return contact_refinement == 1.0 ? cloud : refine_pole<3>(cloud, shape.center, radius, refinement);
     } else {
-      Ball shape = cell_shape();
       shape.core_cells += shape.core_cells % 2;
-      return meridian(shape);
+      PointCloud<2> section = meridian(shape);
+      return contact_refinement == 1.0 ? section : refine_pole<2>(section, Point<2>(0.0, shape.center[2]), radius, refinement);
     }
   }
   template <int D>

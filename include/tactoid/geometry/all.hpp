@@ -12,4 +12,5 @@
 #include <tactoid/geometry/part.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
+#include <tactoid/geometry/pole_refinement.hpp>
 #include <tactoid/geometry/validate.hpp>
