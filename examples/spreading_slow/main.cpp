@@ -47,11 +47,11 @@ struct SlowCase : SpreadingCase<YangVisco<>, 2, Tethers> {
 
 int main(int argc, char** argv) {
   return run_program("spreading_slow", [&] {
-    SpreadingParameters p{.viscosity = 10.0, .activity = 0.0, .director = "radial", .preset = "elastic", .van_der_waals = 100.0, .surface_smoothing = 0.05, .fluid_hourglass_viscosity = 1.0, .min_time_step = 0.0,
+    SpreadingParameters p{.contact_refinement = 2.0, .viscosity = 10.0, .activity = 0.0, .director = "radial", .preset = "elastic", .van_der_waals = 100.0, .bonds_on = "substrate", .contact_points = 4, .surface_smoothing = 0.05, .fluid_hourglass_viscosity = 1.0, .min_time_step = 0.0,
                           .end_time = 600.0};
     // Steps are as long as the shape allows: what they take out of fast motion shows in the balance of energy, and stops no run.
     SpreadingRun run{.out = "out/spreading_slow", .frames = 24, .samples = 240, .energy_limit = 1e9};
-    double elasticity = 10e3, longest = 0.0, redistribution = 0.0;
+    double elasticity = 10e3, longest = 0.0, redistribution = 1.0;
     // Bonds are as long as the gap at which adhesion holds the surfaces.
     Tethers tethers{.length = 100e-9, .capture_distance = 150e-9, .rate_factor = 1.0};
     UpdatedReference<ImpatientSteps> integrator{{}, 1.5, 1};

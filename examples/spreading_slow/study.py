@@ -10,57 +10,51 @@ TITLE = "Minutes: a viscous cell by implicit steps"
 PAPER = [("end-time", "4.5us"), ("activity", "0Pa"), ("director", "radial"), ("frames", "2"), ("samples", "90"), ("resolution", resolution(1.0))]
 EXPLICIT = [[("preset", "printed"), ("stiffness", "10")], [("preset", "elastic"), ("stiffness", "2")]]
 IMPLICIT = [[("preset", "printed"), ("elasticity", "819.72kPa")], [("preset", "elastic"), ("elasticity", "163.944kPa")]]
-SLOW = [("activity", "0Pa"), ("min-time-step", "1ps"), ("frames", "4"), ("samples", "240"), ("tolerance", "3e-4")]
+AS_THERE = [("contact-refinement", "1"), ("bonds-on", "cell"), ("contact-points", "2"), ("redistribute", "0"), ("update-at", "0"), ("tethers", "off"), ("viscosity", "3mPa.s"),
+            ("fluid-hourglass-viscosity", "2.5e-5Pa.s"), ("surface-smoothing", "0"), ("van-der-waals", "1e6")]
+SLOW = [("min-time-step", "1ps"), ("frames", "4"), ("samples", "600"), ("tolerance", "3e-4")]
 COARSE = [*SLOW, ("resolution", resolution(1.0))]
-ELASTICITIES = ["10kPa", "1kPa", "100kPa"]
-STICKING = {"tethers": [], "no tethers": [("tethers", "off")]}
-SUBSTRATES = [*((e, "tethers") for e in ELASTICITIES), ("10kPa", "no tethers")]
+WEAK = [("tether-stiffness", "0.043mN/m")]
+ALONE = [("tethers", "off"), ("van-der-waals", "0")]
+BONDS = {"tethers": [], "weak tethers": WEAK, "adhesion alone": ALONE}
+# Ten minutes.
+MINUTES = {**{f"{e}, {bonds}": [("elasticity", e), *BONDS[bonds]] for bonds in ("tethers", "weak tethers") for e in ("1kPa", "10kPa", "100kPa")},
+           "10kPa, adhesion alone": ALONE}
 VISCOSITIES = ["10Pa.s", "100Pa.s"]
 ACTIVITIES = ["-1kPa", "-20Pa", "-1Pa"]
-CHECKS = {"stretch 1.25": [("update-at", "1.25"), ("resolution", resolution(1.0))], "never": [("update-at", "0"), ("resolution", resolution(1.0))],
-          "finer": [("resolution", resolution(1.5))]}
-BONDS_ALONE = [[("resolution", resolution(r))] for r in (1.0, 1.5)]
-# Ten minutes: bonds of a fluid surface, particles redistributed.
-FLUID = [("bond-area", "mobile"), ("redistribute", "1")]
-ALONE = [("tethers", "off"), ("van-der-waals", "0")]
-MINUTES = {
-    "adhesion alone": [*ALONE, ("end-time", "600s"), ("resolution", resolution(1.0))],
-    "adhesion alone, stretch 1.25": [*ALONE, ("update-at", "1.25"), ("end-time", "600s"), ("resolution", resolution(1.0))],
-    "adhesion alone, finer": [*ALONE, ("end-time", "60s"), ("resolution", resolution(1.5))],
-    "10 kPa, tethers": [("end-time", "600s"), ("resolution", resolution(1.0))],
-    "100 kPa, tethers": [("elasticity", "100kPa"), ("end-time", "600s"), ("resolution", resolution(1.0))],
-    "1 kPa, tethers": [("elasticity", "1kPa"), ("end-time", "600s"), ("resolution", resolution(1.0))],
-    "10 kPa, tethers, stretch 1.25": [("update-at", "1.25"), ("end-time", "600s"), ("resolution", resolution(1.0))],
-    "10 kPa, tethers, 4 points per facet": [("contact-points", "4"), ("end-time", "600s"), ("resolution", resolution(1.0))],
-    "10 kPa, tethers, finer": [("end-time", "60s"), ("resolution", resolution(1.5))],
-}
-# Area with a gap below the range of bonds, 100 nm, of a drop of 5 µm on a rigid plane: drop_area(100e-9).
-DROP_AREA = 21.7e-12
-# An angle of contact of arccos(W/σ − 1), 146 degrees with 12 µJ/m² and 72 µN/m, on a cell of 5 µm.
-YOUNG_AREA = 24.3e-12
+RESOLUTIONS = [1.0, 1.5, 2.0]
+MESHES = [[*BONDS[bonds], ("resolution", resolution(r))] for bonds in BONDS for r in RESOLUTIONS]
+# Other ways to count the bonds.
+CELL = [("bonds-on", "cell"), ("contact-points", "2")]
+WAYS = {"on the substrate": [], "on the substrate, updates at 1.25": [("update-at", "1.25")], "on the substrate, particles are matter": [("redistribute", "0")],
+        "on the cell": [*CELL, ("bond-area", "mobile")], "on the cell, per reference area": CELL}
+# Area with a gap below the range of bonds, 100 nm, of a drop of 5 µm on a rigid plane.
+DROP_AREA = 21.7e-12       # drop_area(100e-9)
+DROP_AREA_WEAK = 47.8e-12  # drop_area(100e-9, tethers=300e12 * 0.043e-3 / 1.1)
 SWEEPS = [
     ("explicit", "spreading_axisymmetric", PAPER, EXPLICIT),
-    ("implicit", "spreading_slow", [*PAPER, ("viscosity", "3mPa.s"), ("fluid-hourglass-viscosity", "2.5e-5Pa.s"), ("surface-smoothing", "0"), ("update-at", "0"),
-                                    ("van-der-waals", "1e6"), ("tethers", "off")], IMPLICIT),
-    ("substrate", "spreading_slow", [*COARSE, ("end-time", "120s")], [[("elasticity", e), *STICKING[s]] for e, s in SUBSTRATES]),
+    ("implicit", "spreading_slow", [*PAPER, *AS_THERE], IMPLICIT),
+    ("minutes", "spreading_slow", [*COARSE, ("end-time", "600s")], list(MINUTES.values())),
+    ("mesh", "spreading_slow", [*SLOW, ("end-time", "60s")], MESHES),
+    ("ways", "spreading_slow", [*COARSE, ("end-time", "60s"), *ALONE], list(WAYS.values())),
+    ("soft", "spreading_slow", [*COARSE, ("end-time", "60s"), ("elasticity", "1kPa")], list(WAYS.values())),
+    ("viscosity", "spreading_slow", [*COARSE, ("end-time", "600s"), ("fluid-hourglass-viscosity", "10Pa.s")], [[("viscosity", v)] for v in VISCOSITIES[1:]]),
     ("activity", "spreading_slow", [("end-time", "60s"), ("min-time-step", "1ps"), ("frames", "2"), ("samples", "120"), ("tolerance", "3e-4"), ("resolution", resolution(1.0))],
      [[("activity", a)] for a in ACTIVITIES]),
-    ("check", "spreading_slow", [*SLOW, ("end-time", "60s")], list(CHECKS.values())),
-    ("bonds", "spreading_slow", [*SLOW, ("end-time", "20s"), ("tethers", "off"), ("van-der-waals", "0")], BONDS_ALONE),
-    ("minutes", "spreading_slow", [*SLOW, *FLUID], list(MINUTES.values())),
-    ("viscosity", "spreading_slow", [*COARSE, ("end-time", "120s"), ("fluid-hourglass-viscosity", "10Pa.s")], [[("viscosity", v)] for v in VISCOSITIES[1:]]),
 ]
 
 
-def drop_area(reach, tension=72e-6, work=12e-6, radius=5e-6):
-    """Area, m², with a gap below `reach` of a drop that bonds of this range hold on a rigid plane. Its shape has
+def drop_area(reach, tension=72e-6, work=12e-6, radius=5e-6, tethers=0.0, rest=100e-9, capture=150e-9):
+    """Area, m², with a gap below `reach` of a drop that bonds of this range, and tethers of a stiffness per area (N/m³) that are bound below the
+    capture distance, hold on a rigid plane. Its shape has
     γ(z) (dψ/ds + sin ψ/r) − γ'(z) cos ψ = p, γ = σ₀ + Φ(z), and above the bonds is a sphere: r σ₀ sin ψ = p r²/2. Inside the contact the
     gap leaves that of the pressure like a Bessel function, from which the integration starts at a radius r₀."""
     def energy(z):
-        return work * ((reach / z) ** 4 - 2.0 * (reach / z) ** 2)
+        stored = 0.5 * tethers * ((z - rest) ** 2 - (capture - rest) ** 2) if z < capture else 0.0
+        return work * ((reach / z) ** 4 - 2.0 * (reach / z) ** 2) + stored
 
     def slope(z):
-        return 4.0 * work / reach * ((reach / z) ** 3 - (reach / z) ** 5)
+        return 4.0 * work / reach * ((reach / z) ** 3 - (reach / z) ** 5) + (tethers * (z - rest) if z < capture else 0.0)
 
     def shape(p, r):
         low, high = 0.5 * reach, reach  # the gap at which bonds carry the pressure
@@ -119,6 +113,10 @@ def early_end(case):
     return f"ends at {last:.3g} s"
 
 
+def areas(case, times):
+    return [number(case.at("spread_area", t) * UM**2, 4) for t in times]
+
+
 def report(folder):
     text = "![Contact radius against time](spreading_slow/slow.png)\n\n"
     pairs = [(Case(folder / "explicit", e), Case(folder / "implicit", i)) for e, i in zip(EXPLICIT, IMPLICIT)]
@@ -130,90 +128,71 @@ def report(folder):
     text += "**The paper's cell**, explicit against implicit steps, spreading area, µm²:\n\n"
     text += table(["", "explicit steps", "implicit steps", "explicit, 4.5 µs", "implicit, 4.5 µs", "largest difference from 1 µs on"], rows) + "\n"
 
+    times = (1.0, 5.0, 20.0, 60.0, 120.0, 300.0, 600.0)
+    heads = ["1 s", "5 s", "20 s", "1 min", "2 min", "5 min", "10 min"]
+    cases = {name: Case(folder / "minutes", options) for name, options in MINUTES.items()}
     rows = []
-    cases = {}
-    for e, what in SUBSTRATES:
-        case = cases[e, what] = Case(folder / "substrate", [("elasticity", e), *STICKING[what]])
-        rows.append([f"{e}, {what}", *(number(case.at("spread_area", t) * UM**2, 4) for t in (1.0, 5.0, 20.0, 60.0, 120.0)),
-                     number(exponent(case, 1.0, 20.0), 2), number(case.summary.get("steps", float("nan")), 5),
-                     number(case.summary.get("wall_seconds", float("nan")) / 2.0, 3)])
-    text += "**Spreading area**, µm², 10 Pa s, no active stress; exponents of the contact radius in time; seconds of the processor per minute:\n\n"
-    text += table(["", "1 s", "5 s", "20 s", "1 min", "2 min", "1 s to 20 s", "steps", "s per minute"], rows) + "\n"
+    for name, case in cases.items():
+        late = None if case.history is None else case.history["spread_area"][case.history["time"] >= 60.0] * UM**2
+        span = "–" if late is None or len(late) < 2 else f"{late.min():.3g} to {late.max():.3g}"
+        rows.append([name if case.completed else f"{name}: {early_end(case)}", *areas(case, times), span, number(exponent(case, 1.0, 20.0), 2),
+                     number(case.summary.get("steps", float("nan")), 5), number(case.summary.get("reference_updates", float("nan")), 5),
+                     number(case.summary.get("refused_updates", float("nan")), 5), number(case.summary.get("wall_seconds", float("nan")) / 10.0, 3)])
+    text += "**Ten minutes**, 10 Pa s, no active stress: spreading area, µm², and its range after the first minute; exponent of the contact radius in time; updates of the reference; seconds of the processor per minute:\n\n"
+    text += table(["", *heads, "after 1 min", "1 to 20 s", "steps", "updates", "refused", "s per minute"], rows) + "\n"
+
+    rows = []
+    for bonds in BONDS:
+        for r in RESOLUTIONS:
+            case = Case(folder / "mesh", [*BONDS[bonds], ("resolution", resolution(r))])
+            rows.append([f"{bonds}, resolution {r:g}", *areas(case, (1.0, 5.0, 20.0, 60.0)), number(exponent(case, 0.1, 1.0), 2), number(case.summary.get("wall_seconds", float("nan")), 3)])
+    text += f"**Meshes**, on 10 kPa. Drops whose bonds have their range rest at {DROP_AREA * UM**2:.1f} µm² (adhesion alone) and {DROP_AREA_WEAK * UM**2:.1f} µm² (weak tethers); with tethers there is no rest, they wet the substrate:\n\n"
+    text += table(["", "1 s", "5 s", "20 s", "1 min", "0.1 to 1 s", "s"], rows) + "\n"
+
+    rows = []
+    for name, options in WAYS.items():
+        alone, soft = Case(folder / "ways", options), Case(folder / "soft", options)
+        rows.append([name, *(f"{number(alone.at('spread_area', t) * UM**2, 4)}" for t in (5.0, 20.0, 60.0)), "" if alone.completed else early_end(alone),
+                     *(f"{number(soft.at('spread_area', t) * UM**2, 4)}" for t in (5.0, 20.0, 60.0)), "" if soft.completed else early_end(soft)])
+    text += "**Where bonds are counted**: adhesion alone on 10 kPa, and tethers on 1 kPa; area, µm²:\n\n"
+    text += table(["", "alone, 5 s", "20 s", "1 min", "", "1 kPa, 5 s", "20 s", "1 min", ""], rows) + "\n"
+
     rows = []
     for v in VISCOSITIES:
-        case = cases["10kPa", "tethers"] if v == VISCOSITIES[0] else Case(folder / "viscosity", [("viscosity", v)])
+        case = cases["10kPa, tethers"] if v == VISCOSITIES[0] else Case(folder / "viscosity", [("viscosity", v)])
         cases[v] = case
-        rows.append([v.replace(".", " "), *(number(case.at("spread_area", t) * UM**2, 4) for t in (1.0, 5.0, 20.0, 60.0, 120.0)), number(exponent(case, 1.0, 20.0), 2),
-                     number(case.summary.get("steps", float("nan")), 5)])
-    text += "**Viscosity**, on 10 kPa with tethers:\n\n" + table(["", "1 s", "5 s", "20 s", "1 min", "2 min", "1 s to 20 s", "steps"], rows) + "\n"
+        rows.append([v.replace(".", " "), *areas(case, times), number(exponent(case, 1.0, 20.0), 2), number(case.summary.get("steps", float("nan")), 5)])
+    text += "**Viscosity**, on 10 kPa with tethers:\n\n" + table(["", *heads, "1 s to 20 s", "steps"], rows) + "\n"
     rows = []
     for a in ACTIVITIES:
         case = Case(folder / "activity", [("activity", a)])
         rows.append([a, "60 s" if case.completed else early_end(case), number(2.0 * 10.0 / abs(float(a.replace("kPa", "e3").replace("Pa", ""))), 2)])
-    text += "**Active stress** at 10 Pa s, and 2μ/|ζ|, s, the time in which it draws the gel out by its own length:\n\n" + table(["ζ", "", "2μ/abs(ζ)"], rows) + "\n"
-    rows = [["as above", *(number(cases["10kPa", "tethers"].at("spread_area", t) * UM**2, 4) for t in (1.0, 5.0, 30.0, 60.0)), ""]]
-    for name, options in CHECKS.items():
-        case = Case(folder / "check", options)
-        rows.append([name, *(number(case.at("spread_area", t) * UM**2, 4) for t in (1.0, 5.0, 30.0, 60.0)), "" if case.completed else early_end(case)])
-    text += "**Numerics**, on 10 kPa with tethers: area, µm², with a reference that is updated at a stretch of 1.5, of 1.25, or never, and on a finer mesh:\n\n"
-    text += table(["", "1 s", "5 s", "30 s", "1 min", ""], rows) + "\n"
-    rows = [[f"resolution {dict(options)['resolution']}", *(number(Case(folder / "bonds", options).at("spread_area", t) * UM**2, 4) for t in (5.0, 10.0, 20.0))] for options in BONDS_ALONE]
-    rows.append(["Young's equation", "", "", number(YOUNG_AREA * UM**2, 4)])
-    text += "**Adhesion alone** (no tethers, no van der Waals force): area, µm², against that of a drop with the contact angle of Young's equation:\n\n"
-    text += table(["", "5 s", "10 s", "20 s"], rows)
-    cases.update({name: Case(folder / "minutes", options) for name, options in MINUTES.items()})
-    return text + "\n" + minutes(cases), {"slow": draw(cases), "minutes": draw_minutes(cases)}
+    text += "**Active stress** at 10 Pa s, and 2μ/|ζ|, s, the time in which it draws the gel out by its own length:\n\n" + table(["ζ", "", "2μ/abs(ζ)"], rows)
+    return text, {"slow": draw(folder, cases)}
 
 
-def minutes(cases):
-    """Ten minutes with redistributed particles: area at times, the range that it keeps from 60 s on, what updates took."""
-    rows = []
-    for name in MINUTES:
-        case = cases[name]
-        late = None if case.history is None else case.history["spread_area"][case.history["time"] >= 60.0] * UM**2
-        span = "–" if late is None or len(late) < 2 else f"{late.min():.3g} to {late.max():.3g}"
-        rows.append([name if case.completed else f"{name}: {early_end(case)}", *(number(case.at("spread_area", t) * UM**2, 4) for t in (5.0, 20.0, 60.0, 120.0, 300.0, 600.0)), span,
-                     number(case.summary.get("reference_updates", float("nan")), 5), number(case.summary.get("refused_updates", float("nan")), 5),
-                     number(case.summary.get("wall_seconds", float("nan")), 3)])
-    text = "![Area over ten minutes](spreading_slow/minutes.png)\n\n"
-    text += f"**Ten minutes**, with `--bond-area mobile --redistribute 1`: area, µm² (a drop whose bonds have their range: {DROP_AREA * UM**2:.1f}); its range after the first minute; updates, refused ones, seconds of the processor:\n\n"
-    return text + table(["", "5 s", "20 s", "1 min", "2 min", "5 min", "10 min", "after 1 min", "updates", "refused", "s"], rows)
-
-
-def draw_minutes(cases):
-    figure, axes = plt.subplots(1, 2, figsize=(9.2, 3.4), layout="constrained", dpi=85, sharey=True)
+def draw(folder, cases):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.6), layout="constrained", dpi=85)
     for k, name in enumerate(MINUTES):
         history = cases[name].history
-        alone = name.startswith("adhesion")
-        if history is not None and len(history["time"]) > 1:
-            axes[0 if alone else 1].semilogx(history["time"][1:], history["spread_area"][1:] * UM**2, color=f"C{k if alone else k - 3}",
-                                            label=name.replace("adhesion alone, ", "").replace(", tethers", ""))
-    axes[0].axhline(DROP_AREA * UM**2, color="0.5", linewidth=0.8)
-    axes[0].text(1.05, DROP_AREA * UM**2 + 0.6, "drop, by theory", color="0.4", fontsize=8)
-    axes[0].set(title="adhesion alone", ylabel="spreading area (µm²)", ylim=(0.0, 45.0))
-    axes[1].set(title="with tethers")
-    for axis in axes:
-        axis.set(xlabel="time (s)", xlim=(1.0, 600.0))
-        axis.legend(fontsize=7, loc="lower right")
-    return figure
-
-
-def draw(cases):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.6), layout="constrained", dpi=85)
-    for k, (e, what) in enumerate(SUBSTRATES):
-        history = cases[e, what].history
         if history is not None:
-            left.loglog(history["time"][1:], history["contact_radius"][1:] * UM, "--" if what == "no tethers" else "-", color=f"C{k}", label=f"{e}, {what}")
-    for k, v in enumerate(VISCOSITIES):
-        history = cases[v].history
-        if history is not None:
-            right.loglog(history["time"][1:], history["contact_radius"][1:] * UM, color=f"C{k + 4}", label=v.replace(".", " "))
-    for axis in (left, right):
-        time = np.array([1.0, 20.0])
-        axis.loglog(time, 1.8 * (time / 1.0) ** 0.25, color="0.6", linewidth=0.8)
-        axis.text(4.0, 2.2, "t^¼", color="0.4", fontsize=8)
-        axis.set(xlabel="time (s)", ylabel="contact radius (µm)", xlim=(0.4, 150.0))
-        axis.legend(fontsize=7)
-    left.set_title("10 Pa s, three substrates")
-    right.set_title("10 kPa, tethers, two viscosities")
+            style = "-" if name.endswith("a, tethers") else "--" if name.endswith("weak tethers") else ":"
+            left.semilogx(history["time"][1:], history["spread_area"][1:] * UM**2, style, color=f"C{k % 3}", label=name)
+    left.axhline(DROP_AREA * UM**2, color="0.5", linewidth=0.8)
+    left.text(0.12, DROP_AREA * UM**2 + 0.5, "drop, adhesion alone", color="0.4", fontsize=8)
+    left.set(xlabel="time (s)", ylabel="spreading area (µm²)", xlim=(0.1, 600.0), ylim=(0.0, 60.0))
+    for k, r in enumerate(RESOLUTIONS):
+        for style, bonds in zip(("-", "--", ":"), BONDS):
+            history = Case(folder / "mesh", [*BONDS[bonds], ("resolution", resolution(r))]).history
+            if history is not None:
+                right.loglog(history["time"][1:], history["contact_radius"][1:] * UM, style, color=f"C{k}", label=f"resolution {r:g}" if style == "-" else None)
+    history = cases[VISCOSITIES[1]].history
+    if history is not None:
+        right.loglog(history["time"][1:], history["contact_radius"][1:] * UM, "-", color="C3", label="100 Pa s")
+    time = np.array([0.3, 20.0])
+    right.loglog(time, 1.2 * time**0.25, color="0.6", linewidth=0.8)
+    right.text(3.0, 1.35, "t^¼", color="0.4", fontsize=8)
+    right.set(xlabel="time (s)", ylabel="contact radius (µm)", xlim=(0.1, 60.0))
+    left.legend(fontsize=6.5, loc="lower right")
+    right.legend(fontsize=7, loc="lower right")
     return figure
