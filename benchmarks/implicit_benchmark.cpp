@@ -24,7 +24,7 @@ void cell_on_substrate(benchmark::State& state) {
   state.counters["tangents"] = static_cast<double>(report.factorizations);
 }
 
-BENCHMARK(cell_on_substrate)->ArgNames({"resolution", "incomplete", "threads"})->ArgsProduct({{20, 30, 40, 60}, {0, 1}, {1}})->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
+BENCHMARK(cell_on_substrate)->ArgNames({"resolution", "incomplete", "threads"})->Args({20, 0, 1})->Args({20, 1, 1})->Args({30, 0, 1})->Args({30, 1, 1})->Args({40, 1, 1})->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
 
 }  // namespace
 

@@ -45,6 +45,7 @@ minutes. Every study has its folder, with its question, its commands and the com
 | the axisymmetric model (Fig. 10) | reproduced | its spreading area is that in three dimensions, between the finest of both within 4.5 % (printed) and 5.3 % (elastic) from 1 µs on, 2 % from 2 µs on; no waves, by construction |
 | open in the paper: stability at a realistic contractile stress | runs of 4.5 µs come to their end up to −5 kPa; the particles keep their order up to −1 kPa, nearly up to −2 kPa | with the viscosity of cytosol the gel is drawn out within R √(ρ/&#124;ζ&#124;), whatever mesh, time step and bonds; more viscosity helps |
 | beyond the paper: bonds that hold in the tangential direction | up to −2 kPa the cell goes to the soft side, by 3 to 9 nm in 4.5 µs | the substrate gives way further there; the spreading cell pushes it outward, and does not pull |
+| beyond the paper: minutes, at 10 Pa s | the cell spreads within seconds to a minute, and stays for ten | adhesion alone rests at the area of theory; bonds of 1 pN/nm wet the substrate, as far as the mesh lets them, R ~ t^¼; stiffness decides little; −1 kPa tears a gel apart that has no elasticity |
 """
 
 

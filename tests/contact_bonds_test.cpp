@@ -1,6 +1,8 @@
 // Bonds between material points of two surfaces, against closed forms.
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <doctest/doctest.h>
 
@@ -317,6 +319,16 @@ TEST_CASE("Receptors of the second body: the same as the bodies in the other ord
     CHECK(pair.cube.force == on_cube);
     CHECK(pair.slab.force == on_slab);
     CHECK(second.stiffness_rate(slab, cube) == pair.bonds.stiffness_rate(cube, slab));
+    const auto stiffness = [](const TetheredBonds& bonds, const ParticleFields& a, const ParticleFields& b, bool exchanged) {
+      std::map<std::array<Index, 4>, double> sums;
+      bonds.add_stiffness(a, b, [&](bool of_b, Index i, bool by_b, Index j, const Tensor3& K) {
+        sums[{Index(of_b != exchanged), i, Index(by_b != exchanged), j}] += K(2, 2) + 2.0 * K(0, 0) + 3.0 * K(0, 2);
+      });
+      return sums;
+    };
+    const auto sums = stiffness(second, slab, cube, false);
+    CHECK(sums.empty() == (k == 0));  // no time has gone by yet
+    CHECK(sums == stiffness(pair.bonds, cube, slab, true));
   }
   CHECK(second.bonds() > 0.0);
 }

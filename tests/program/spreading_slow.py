@@ -21,7 +21,7 @@ class SpreadingSlow(SpreadingProgram):
     def test_implicit_steps_give_the_area_of_explicit_ones(self):
         paper = ["--preset=printed", "--end-time=2us"]
         self.run_program("implicit", *paper, "--elasticity=819.72kPa", "--viscosity=3mPa.s", "--van-der-waals=1e6", "--tethers=off",
-                         "--fluid-hourglass-viscosity=2.5e-5Pa.s", "--surface-smoothing=0", "--update-at=0", "--redistribute=0", "--bonds-on=cell", "--contact-points=2",
+                         "--fluid-hourglass-viscosity=2.5e-5Pa.s", "--surface-smoothing=0", "--update-at=0", "--bonds-on=cell", "--contact-points=2",
                          "--contact-refinement=1")
         self.run_program("explicit", *paper, "--stiffness=10", program=1)
         implicit, explicit = self.history("implicit"), self.history("explicit")

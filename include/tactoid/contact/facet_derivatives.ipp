@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <cmath>
 
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/contact/facet_derivatives.hpp>

@@ -24,7 +24,7 @@ enum class ContactArea {
   current,    ///< per current area (Nanson): a traction, not a gradient; the energy Σ a_q Φ changes also with
               ///< the area a_q, and that power, Σ ȧ_q Φ, is reported as external power
   mobile      ///< per current area, of which there are as many bonds everywhere: a fluid surface, in which receptors drift. The force is
-              ///< exactly the gradient of the energy Σ a_q Φ(gap_q): beside the traction it lowers the tension of A's surface by −Φ where it adheres,
+              ///< exactly the gradient of the energy Σ a_q Φ(gap_q): beside the traction it lowers the tension of the sampled surface by −Φ where it adheres,
               ///< which Young's equation needs
 };
 
@@ -140,7 +140,8 @@ class ContactPass {
       const auto g = gap_derivatives(master_, closest[q], master.position);
       const Vector3& n = closest[q].normal;
       // Of the potential Φ, by the gap.
-      const double first = -law.traction(gap), near = 1e-6 * std::abs(gap);
+      const auto& ends = slave_.facets[facet];
+      const double first = -law.traction(gap), near = 1e-6 * std::max(std::abs(gap), (slave.position[ends[0]] - slave.position[ends[1]]).norm());
       const double second = std::copysign(law.stiffness(gap), law.traction(gap - near) - law.traction(gap + near));
       // The slave's nodes move the point, the master's the surface.
       std::array<double, 2 * corners> share;
@@ -264,6 +265,7 @@ class SurfaceContactEngine {
   /// For checkpoints: those of the passes.
   template <class Archive>
   void state(Archive& archive) {
+    archive.expect("passes", (forth_.empty() ? 0 : 1) + (back_.empty() ? 0 : 2));
     archive.part("forth", forth_);
     archive.part("back", back_);
   }
@@ -304,6 +306,8 @@ struct SurfaceContact {
   void add_stiffness(const ParticleFields& a, const ParticleFields& b, const Emit& emit) const {
     engine.emit_stiffness(law, a, b, area, emit);
   }
+  /// See SurfaceContactEngine.
+  void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&) { engine.redistribute(surface); }
   /// For checkpoints: the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("engine", engine); }

@@ -176,9 +176,9 @@ struct TetheredBonds {
   /// what bonds store, stay. The bonds that meet in a site have the mean of their extensions, and are anchored where that leads. Where B has the
   /// receptors, bonds stay in their sites, and their anchors in their places of A's surface.
   void redistribute(const SurfaceTransfer& surface, const ParticleFields& a, const ParticleFields& b);
-  /// Throws ParameterError for stochastic bonds: each is at its place of a facet.
+  /// Throws ParameterError for stochastic bonds of A: each is at its place of a facet.
   void require_redistributable() const {
-    if (stochastic) throw ParameterError("Redistribution: stochastic TetheredBonds keep their places on the facets; use the mean field.");
+    if (stochastic && sampled == ContactSide::first) throw ParameterError("Redistribution: stochastic TetheredBonds keep their places on the facets; use the mean field.");
   }
   /// Bound of ω², 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
@@ -194,7 +194,10 @@ struct TetheredBonds {
   [[nodiscard]] double bonds() const;
   /// What a checkpoint keeps.
   template <class Archive>
-  void state(Archive& archive) { archive.part("sites", sites); }
+  void state(Archive& archive) {
+    archive.expect("receptors_on", sampled == ContactSide::first ? 0 : 1);
+    archive.part("sites", sites);
+  }
 };
 template <int D>
 template <class Emit>

@@ -70,8 +70,8 @@ struct VanDerWaals {
   /// G/d₀ e^{−g/d₀} at the least gap, 1/s²; with `reaction` for the surface of B too.
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
 
-  /// Of each particle of A on itself, at the gaps of the last call of apply. That the surface of B moves is left out: matrices stay as sparse as
-  /// without it, and the surface moves little in the range of the force.
+  /// Of each particle of A on itself, at the gaps of the last call of apply. That the surface of B moves, and the reaction on it, are left out: matrices stay
+  /// as sparse as without them, and the surface moves little in the range of the force.
   template <class Emit>
   void add_stiffness(const ParticleFields& a, const ParticleFields& b, const Emit& emit) const {
     particles.visit([&](const auto& p) {

@@ -87,7 +87,7 @@ struct UpdatedReference : Inner {
     if (std::isfinite(distortion)) system.require_updatable();
     if (redistribution) {
       redistribution->validate();
-      system.require_redistributable();
+      if (std::isfinite(distortion)) system.require_redistributable();
     }
     reference = {};
     since = 0;
