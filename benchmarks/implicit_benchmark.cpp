@@ -1,5 +1,5 @@
 // Implicit steps of the viscous cell on its substrate in three dimensions, everything on: from the start, 200 nm above, over a time, in steps that are chosen
-// by their error. Arguments: resolution in per cent of the paper's; preconditioner (0: LU factors, 1: incomplete ones); threads.
+// by their error. Arguments: resolution in per cent of the paper's (40 takes minutes); preconditioner (0: LU factors, 1: incomplete ones); threads.
 #include "report.hpp"
 #include <common/spreading_case.hpp>
 
@@ -24,7 +24,7 @@ void cell_on_substrate(benchmark::State& state) {
   state.counters["tangents"] = static_cast<double>(report.factorizations);
 }
 
-BENCHMARK(cell_on_substrate)->ArgNames({"resolution", "incomplete", "threads"})->Args({20, 0, 1})->Args({20, 1, 1})->Args({30, 0, 1})->Args({30, 1, 1})->Args({40, 1, 1})->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
+BENCHMARK(cell_on_substrate)->ArgNames({"resolution", "incomplete", "threads"})->Args({20, 0, 1})->Args({20, 1, 1})->Args({30, 0, 1})->Args({30, 1, 1})->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
 
 }  // namespace
 
