@@ -128,7 +128,7 @@ double stiffness_error(C& contact, TestBody<D>& a, TestBody<D>& b, std::uint64_t
   Eigen::VectorXd exact = -(8.0 * (forces(step) - forces(-step)) - (forces(2.0 * step) - forces(-2.0 * step))) / (12.0 * step);
   a.position = xa;
   b.position = xb;
-  const auto count = static_cast<Eigen::Index>(both ? direction.size() : begin[1]);
+  const Eigen::Index count = both ? direction.size() : static_cast<Eigen::Index>(begin[1]);
   CHECK(exact.head(count).norm() > 0.0);
   return (exact - assembled).head(count).cwiseAbs().maxCoeff() / exact.head(count).cwiseAbs().maxCoeff();
 }
