@@ -133,6 +133,24 @@ double stiffness_error(C& contact, TestBody<D>& a, TestBody<D>& b, std::uint64_t
   return (exact - assembled).head(count).cwiseAbs().maxCoeff() / exact.head(count).cwiseAbs().maxCoeff();
 }
 
+/// Bodies A and B in space, in a plane and around an axis, with gaps from a penetration outwards; both surfaces rough, so that edges and corners are
+/// closest too.
+struct RoughPairs {
+  TestBody<3> a = small_ball(3, 2), b = slab(7);
+  TestBody<2> flat_a = small_circle(), flat_b = strip();
+  TestBody<2> round_a{meridian(Ball{.radius = um, .core_radius = 0.4 * um, .core_cells = 4, .shells = 2})};
+  TestBody<2> round_b{meridian(Disc{.radius = 2.0 * um, .height = 0.8 * um, .core_cells = 4, .rings = 3, .layers = 3})};
+
+  explicit RoughPairs(std::uint64_t seed) {
+    a.place({0.1 * um, 0.07 * um, 0.9 * um}, 0.03 * um, seed, 0.3, Vector3(1, 0.3, 0.5));
+    b.place({0, 0, 0}, 0.03 * um, seed + 10);
+    flat_a.place({0.1 * um, 0.99 * um, 0.0}, 0.03 * um, seed, 0.3);
+    flat_b.place({0, 0, 0}, 0.03 * um, seed + 20);
+    round_a.place({0.0, 1.02 * um, 0.0}, 0.02 * um, seed);
+    round_b.place({0.0, 0.0, 0.0}, 0.02 * um, seed + 30);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("ligand-receptor law: peak, work of adhesion, floor, cutoff, derivative") {
@@ -345,10 +363,8 @@ TEST_CASE("gap sign across edges and corners of a box, and continuity of gap and
 TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positions of both bodies") {
   double worst = 0.0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    auto a = small_ball(3, 2), b = slab(7);
-    // Gaps from a penetration outwards; both surfaces rough, so that edges and corners are closest too.
-    a.place({0.1 * um, 0.07 * um, 0.9 * um}, 0.03 * um, seed, 0.3, Vector3(1, 0.3, 0.5));
-    b.place({0, 0, 0}, 0.03 * um, seed + 10);
+    RoughPairs pairs(seed);
+    auto& [a, b, flat_a, flat_b, round_a, round_b] = pairs;
     LigandReceptor one{}, two{.sampled = ContactSide::both, .points_per_direction = 3};
     worst = std::max(worst, consistency<3>(one, a, b, 100 * seed, 3e-7 * um));
     const auto& closest = one.engine.visit([](const auto& pass) {
@@ -372,21 +388,13 @@ TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positio
     CHECK(a.force == on_a);
     CHECK(b.force == on_b);
     CHECK(second.stiffness_rate(fa, fb) == exchanged.stiffness_rate(fb, fa));
-    auto a2 = small_circle();
-    auto b2 = strip();
-    a2.place({0.1 * um, 0.99 * um, 0.0}, 0.03 * um, seed, 0.3);
-    b2.place({0, 0, 0}, 0.03 * um, seed + 20);
     LigandReceptor flat{};
-    worst = std::max(worst, consistency<2>(flat, a2, b2, 300 * seed, 3e-7 * um));
+    worst = std::max(worst, consistency<2>(flat, flat_a, flat_b, 300 * seed, 3e-7 * um));
     // Of mobile bonds the area of A's facets counts too: in 3D, in a plane, around an axis.
     LigandReceptor mobile{.area = ContactArea::mobile}, flat_mobile = mobile, round = mobile;
     worst = std::max(worst, consistency<3>(mobile, a, b, 400 * seed, 3e-7 * um));
-    worst = std::max(worst, consistency<2>(flat_mobile, a2, b2, 500 * seed, 3e-7 * um));
-    TestBody<2> a3(meridian(Ball{.radius = um, .core_radius = 0.4 * um, .core_cells = 4, .shells = 2})),
-        b3(meridian(Disc{.radius = 2.0 * um, .height = 0.8 * um, .core_cells = 4, .rings = 3, .layers = 3}));
-    a3.place({0.0, 1.02 * um, 0.0}, 0.02 * um, seed);
-    b3.place({0.0, 0.0, 0.0}, 0.02 * um, seed + 30);
-    worst = std::max(worst, consistency<2>(round, a3, b3, 600 * seed, 3e-7 * um));
+    worst = std::max(worst, consistency<2>(flat_mobile, flat_a, flat_b, 500 * seed, 3e-7 * um));
+    worst = std::max(worst, consistency<2>(round, round_a, round_b, 600 * seed, 3e-7 * um));
   }
   MESSAGE("largest relative error of the work: ", worst);
   CHECK(worst < 1e-6);
@@ -395,17 +403,8 @@ TEST_CASE("ligand-receptor: forces are the gradient of the energy in the positio
 TEST_CASE("the stiffness of a contact is how its forces change: gaps, normals that turn, areas; sampled on one or both bodies, in 3D, in a plane, around an axis") {
   double worst = 0.0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    auto a = small_ball(3, 2), b = slab(7);
-    a.place({0.1 * um, 0.07 * um, 0.9 * um}, 0.03 * um, seed, 0.3, Vector3(1, 0.3, 0.5));
-    b.place({0, 0, 0}, 0.03 * um, seed + 10);
-    auto flat_a = small_circle();
-    auto flat_b = strip();
-    flat_a.place({0.1 * um, 0.99 * um, 0.0}, 0.03 * um, seed, 0.3);
-    flat_b.place({0, 0, 0}, 0.03 * um, seed + 20);
-    TestBody<2> round_a(meridian(Ball{.radius = um, .core_radius = 0.4 * um, .core_cells = 4, .shells = 2})),
-        round_b(meridian(Disc{.radius = 2.0 * um, .height = 0.8 * um, .core_cells = 4, .rings = 3, .layers = 3}));
-    round_a.place({0.0, 1.02 * um, 0.0}, 0.02 * um, seed);
-    round_b.place({0.0, 0.0, 0.0}, 0.02 * um, seed + 30);
+    RoughPairs pairs(seed);
+    auto& [a, b, flat_a, flat_b, round_a, round_b] = pairs;
     // Without the jump at the cutoff, over which a difference reaches.
     for (const ContactArea area : {ContactArea::reference, ContactArea::current, ContactArea::mobile})
       for (const ContactSide sampled : {ContactSide::first, ContactSide::second, ContactSide::both}) {
