@@ -119,6 +119,11 @@ def areas(case, times):
     return [number(case.at("spread_area", t) * UM**2, 4) for t in times]
 
 
+def mesh_row(name, case):
+    return [name, *areas(case, (1.0, 5.0, 20.0, 60.0)), number(exponent(case, 0.1, 1.0), 2), number(exponent(case, 1.0, 10.0), 2),
+            number(case.summary.get("wall_seconds", float("nan")), 3)]
+
+
 def report(folder):
     text = "![Contact radius against time](spreading_slow/slow.png)\n\n"
     pairs = [(Case(folder / "explicit", e), Case(folder / "implicit", i)) for e, i in zip(EXPLICIT, IMPLICIT)]
@@ -146,18 +151,15 @@ def report(folder):
     rows = []
     for bonds in BONDS:
         for r in RESOLUTIONS:
-            case = Case(folder / "mesh", [*BONDS[bonds], ("resolution", resolution(r))])
-            rows.append([f"{bonds}, resolution {r:g}", *areas(case, (1.0, 5.0, 20.0, 60.0)), number(exponent(case, 0.1, 1.0), 2), number(exponent(case, 1.0, 10.0), 2), number(case.summary.get("wall_seconds", float("nan")), 3)])
-    case = Case(folder / "finest", FINEST)
-    rows.insert(len(RESOLUTIONS), ["tethers, resolution 3, facets finer", *areas(case, (1.0, 5.0, 20.0, 60.0)), number(exponent(case, 0.1, 1.0), 2), number(exponent(case, 1.0, 10.0), 2), number(case.summary.get("wall_seconds", float("nan")), 3)])
+            rows.append(mesh_row(f"{bonds}, resolution {r:g}", Case(folder / "mesh", [*BONDS[bonds], ("resolution", resolution(r))])))
+    rows.insert(len(RESOLUTIONS), mesh_row("tethers, resolution 3, facets finer", Case(folder / "finest", FINEST)))
     text += f"**Meshes**, on 10 kPa. Drops whose bonds have their range rest at {DROP_AREA * UM**2:.1f} µm² (adhesion alone) and {DROP_AREA_WEAK * UM**2:.1f} µm² (weak tethers); with tethers there is no rest, they wet the substrate. Exponents of the contact radius in time, seconds of the processor:\n\n"
     text += table(["", "1 s", "5 s", "20 s", "1 min", "0.1 to 1 s", "1 to 10 s", "s"], rows) + "\n"
 
     rows = []
     for name, options in WAYS.items():
         alone, soft = Case(folder / "ways", options), Case(folder / "soft", options)
-        rows.append([name, *(f"{number(alone.at('spread_area', t) * UM**2, 4)}" for t in (5.0, 20.0, 60.0)), "" if alone.completed else early_end(alone),
-                     *(f"{number(soft.at('spread_area', t) * UM**2, 4)}" for t in (5.0, 20.0, 60.0)), "" if soft.completed else early_end(soft)])
+        rows.append([name, *(text for case in (alone, soft) for text in (*areas(case, (5.0, 20.0, 60.0)), "" if case.completed else early_end(case)))])
     text += "**Where bonds are counted**: adhesion alone on 10 kPa, and tethers on 1 kPa; area, µm²:\n\n"
     text += table(["", "alone, 5 s", "20 s", "1 min", "", "1 kPa, 5 s", "20 s", "1 min", ""], rows) + "\n"
 
