@@ -357,6 +357,8 @@ TEST_CASE("a ball that is refined at its pole: facets there are as small as said
   };
   check(ball({.radius = 2.0, .core_radius = 0.8, .core_cells = 6, .shells = 4, .center = {0.0, 0.0, 0.5}}), Point<3>(0.0, 0.0, 0.5));
   check(meridian(Ball{.radius = 2.0, .core_radius = 0.8, .core_cells = 6, .shells = 4, .center = {0.0, 0.0, 0.5}}), Point<2>(0.0, 0.5));
+  const PointCloud<2> section = meridian(Ball{.radius = 2.0, .core_radius = 0.8});
+  CHECK(refine_pole<2>(section, Point<2>::Zero(), 2.0, {.factor = 1.0}).positions == section.positions);
   // π stays π, and the angle grows.
   CHECK(refinement.polar_angle(std::numbers::pi) == doctest::Approx(std::numbers::pi).epsilon(1e-14));
   for (int k = 0; k < 100; ++k) CHECK(refinement.polar_angle(0.0314 * (k + 1)) > refinement.polar_angle(0.0314 * k));

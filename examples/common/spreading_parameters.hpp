@@ -197,12 +197,10 @@ struct SpreadingParameters {
     const PoleRefinement refinement{.factor = contact_refinement};
     Ball shape = cell_shape();
     if constexpr (D == 3) {
-      PointCloud<3> cloud = turned(ball(shape));
-      return contact_refinement == 1.0 ? cloud : refine_pole<3>(cloud, shape.center, radius, refinement);
+      return refine_pole<3>(turned(ball(shape)), shape.center, radius, refinement);
     } else {
       shape.core_cells += shape.core_cells % 2;
-      PointCloud<2> section = meridian(shape);
-      return contact_refinement == 1.0 ? section : refine_pole<2>(section, Point<2>(0.0, shape.center[2]), radius, refinement);
+      return refine_pole<2>(meridian(shape), Point<2>(0.0, shape.center[2]), radius, refinement);
     }
   }
   template <int D>

@@ -19,7 +19,7 @@ struct PoleRefinement {
 };
 
 /// A ball() or its meridian() section with the polar angle (about `center`, from the last axis downwards) of particles on the surface changed like this, and
-/// that of particles inside by √(their share of `radius`, m) of the change: cells are sheared by half of it at most. Throws ParameterError, GeometryError if a cell inverts.
+/// that of particles inside by √(their share of `radius`, m) of the change: cells are sheared by half of it at most. A factor of 1 gives the ball as it is. Throws ParameterError, GeometryError if a cell inverts.
 template <int D>
   requires(D >= 2)
 [[nodiscard]] PointCloud<D> refine_pole(const PointCloud<D>& ball, const Point<D>& center, double radius, const PoleRefinement& refinement);

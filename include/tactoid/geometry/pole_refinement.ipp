@@ -29,6 +29,7 @@ template <int D>
 PointCloud<D> refine_pole(const PointCloud<D>& ball, const Point<D>& center, double radius, const PoleRefinement& refinement) {
   refinement.validate();
   require_positive("refine_pole.radius", radius, "m");
+  if (refinement.factor == 1.0) return ball;
   PointCloud<D> refined = ball;
   for (Point<D>& X : refined.positions) {
     const Point<D> r = X - center;
