@@ -140,8 +140,9 @@ class ContactPass {
       const auto g = gap_derivatives(master_, closest[q], master.position);
       const Vector3& n = closest[q].normal;
       // Of the potential Φ, by the gap.
-      const auto& ends = slave_.facets[facet];
-      const double first = -law.traction(gap), near = 1e-6 * std::max(std::abs(gap), (slave.position[ends[0]] - slave.position[ends[1]]).norm());
+      const auto& from = slave_.facets[facet];
+      const auto& onto = master_.facets[closest[q].facet];
+      const double first = -law.traction(gap), near = 1e-6 * std::max(std::abs(gap), (slave.position[from[0]] - slave.position[from[1]]).norm());
       const double second = std::copysign(law.stiffness(gap), law.traction(gap - near) - law.traction(gap + near));
       // The slave's nodes move the point, the master's the surface.
       std::array<double, 2 * corners> share;
@@ -170,8 +171,6 @@ class ContactPass {
             for (std::size_t l = 0; l < corners; ++l) K[k][l] += law.potential(gap) * point.weight * curvatures[k][l];
         }
       }
-      const auto& from = slave_.facets[facet];
-      const auto& onto = master_.facets[closest[q].facet];
       for (std::size_t k = 0; k < K.size(); ++k)
         for (std::size_t l = 0; l < K.size(); ++l)
           emit(k >= corners, k < corners ? from[k] : onto[k - corners], l >= corners, l < corners ? from[l] : onto[l - corners], Tensor3(factor * K[k][l]));
