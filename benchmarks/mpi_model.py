@@ -1,8 +1,9 @@
 """What a step costs on many ranks: the model of include/tactoid/mpi/README.md, as a table.
 
-    python3 mpi_model.py [--ns-per-pair 8 --latency 6e-6 --bandwidth 2e9 --surface 0]
+    python3 mpi_model.py [--order ranks --ns-per-pair 8 --latency 6e-6 --bandwidth 2e9 --surface 0]
 
-A cube of N particles, cut into P cubes of n = N/P; a rank computes alone, one thread. Times in seconds, bytes as doubles of 8.
+A cube of N particles, cut into P cubes of n = N/P; a rank computes alone, one thread. Times in seconds, bytes as doubles of 8. Sums are made in the
+order of the ranks (SumOrder::of_ranks), or with --order process in that of one process.
 """
 
 import argparse
@@ -14,35 +15,43 @@ CHUNK = 512  # points
 UNPACK = 30e-9  # s per chunk of the whole body, on every rank
 
 
-def step(N, P, c, latency, bandwidth, surface, contact):
+def step(N, P, by_rank, c, latency, bandwidth, surface, contact):
     n = N / P
     a = n ** (1 / 3)
     whole = N ** (1 / 3)
-    grown = min(a + 2 * REACH, whole) ** 3  # rows that a rank inside evaluates
-    halo = min(a + 4 * REACH, whole) ** 3 - n  # particles that they touch and other ranks own
-    work = c * ROW * grown
-    tell = 48 * halo / bandwidth
-    chunks = N / CHUNK * (56 / bandwidth + UNPACK)  # all chunks to all ranks
-    kinetic = 8 * max(n, N / min(P, 64)) / bandwidth  # 64 parts are summed by 64 ranks at most
+    grown = min(a + 2 * REACH, whole) ** 3  # particles that own rows touch; as rows, those that touch own particles
+    if by_rank:
+        work = c * ROW * n
+        tell = (48 + 24) * (grown - n) / bandwidth  # motion there, forces back
+        sums = P * 80 / bandwidth
+        calls = 6
+    else:
+        work = c * ROW * grown
+        tell = 48 * (min(a + 4 * REACH, whole) ** 3 - n) / bandwidth
+        chunks = N / CHUNK * (56 / bandwidth + UNPACK)  # all chunks to all ranks
+        sums = chunks + 8 * max(n, N / min(P, 64)) / bandwidth  # kinetic energy: 64 parts are summed by 64 ranks at most
+        calls = 5
     known = surface * 6 * whole**2
-    contacts = known * (72 / bandwidth + contact)  # by all ranks
-    wait = 5 * latency * math.log2(P)  # five collective calls
-    return c * ROW * N / P, work, tell, chunks + kinetic, contacts, wait
+    # Four fifths of a contact's time are the search of closest points, which is divided; what is found goes to all ranks.
+    contacts = known * ((72 + 88) / bandwidth + contact * (0.2 + 0.8 / P))
+    wait = calls * latency * math.log2(P)
+    return c * ROW * N / P, work, tell, sums, contacts, wait
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--order", choices=("ranks", "process"), default="ranks", help="in which sums are made")
     parser.add_argument("--ns-per-pair", type=float, default=8.0)
     parser.add_argument("--latency", type=float, default=6e-6, help="s per stage of a collective call")
     parser.add_argument("--bandwidth", type=float, default=2e9, help="bytes/s that one rank sends or receives")
     parser.add_argument("--surface", type=float, default=0.0, help="share of the cube's surface that is known to all")
-    parser.add_argument("--contact-ns", type=float, default=200.0, help="ns per particle of that surface, on every rank")
+    parser.add_argument("--contact-ns", type=float, default=200.0, help="ns per particle of that surface in one process")
     p = parser.parse_args()
-    print("| N | ranks | particles per rank | rows evaluated twice | step, ms | halo | chunks, energy | surfaces | waiting | efficiency |")
+    print("| N | ranks | particles per rank | rows evaluated twice | step, ms | halo | sums | surfaces | waiting | efficiency |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     for N in (1e7, 1e8, 1e9):
         for P in (64, 256, 1024, 4096):
-            ideal, work, *rest = step(N, P, 1e-9 * p.ns_per_pair, p.latency, p.bandwidth, p.surface, 1e-9 * p.contact_ns)
+            ideal, work, *rest = step(N, P, p.order == "ranks", 1e-9 * p.ns_per_pair, p.latency, p.bandwidth, p.surface, 1e-9 * p.contact_ns)
             total = work + sum(rest)
             shares = " | ".join(f"{100 * x / total:.1f} %" for x in rest)
             print(f"| 10{'⁷⁸⁹'[int(round(math.log10(N))) - 7]} | {P} | {N / P:.3g} | {100 * (work / ideal - 1):.0f} % | {1e3 * total:.3g} | {shares} | {ideal / total:.2f} |")

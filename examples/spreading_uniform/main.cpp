@@ -15,13 +15,17 @@ int main(int argc, char** argv) {
     SpreadingParameters p;
     SpreadingRun run{.out = "out/spreading_uniform"};
     double stiffness = 10.0;
+    std::string sum_order = "process";
     Options options("spreading_uniform",
                     "A cell adheres to and spreads on a uniform substrate (Zeng and Li, Soft Matter 2012, 8, 5765).");
     options.add("stiffness", &stiffness, Range::positive(),
                 "Factor on the constants of the base substrate; 2, 5 and 10 are substrates I, II and III");
     p.add_to(options);
     run.add_to(options);
+    options.add_choice("sum-order", &sum_order, {"process", "ranks"},
+                       "How several processes add up: with the bits of one, or each row once, which is faster and the same but for round-off");
     if (!options.parse(argc, argv)) return 0;
+    session.sum_order = sum_order == "ranks" ? SumOrder::of_ranks : SumOrder::of_one_process;
     run(SpreadingCase{p, p.substrate_law(stiffness)}, options);
     return 0;
   });

@@ -76,6 +76,22 @@ class Mpi(unittest.TestCase):
             continued_run.assert_same(self, "one/out", folder + "/out", "history.csv", "front.csv", "parameters.toml")
             self.assert_same_state("one/out/checkpoint.h5", folder + "/out/checkpoint.h5")
 
+    def test_in_the_order_of_the_ranks_numbers_are_the_same_but_for_round_off(self):
+        self.succeed(one(*RUN, "--out", "one", folder=self.folder))
+        self.succeed(ranks(4, *RUN, "--sum-order", "ranks", "--out", "two", folder=self.folder))
+        self.assert_close("one/checkpoint.h5", "two/checkpoint.h5")
+        # And one process goes on in its own order.
+        for folder in ("one", "two"):
+            self.succeed(one("--restart", folder + "/checkpoint.h5", "--end-time", "0.4us", "--sum-order", "process", "--out", folder, folder=self.folder))
+        self.assert_close("one/checkpoint.h5", "two/checkpoint.h5")
+
+    def assert_close(self, one_file, other_file):
+        name = "simulation/body_0/displacement"
+        with h5py.File(self.folder / one_file) as a, h5py.File(self.folder / other_file) as b:
+            x, y = a[name][()], b[name][()]
+        self.assertLess(abs(x - y).max(), 1e-10 * abs(x).max())
+        self.assertGreater(abs(x - y).max(), 0.0)
+
     def test_any_number_of_ranks_goes_on_where_a_signal_ended_another(self):
         self.succeed(one(*RUN, "--out", "whole", folder=self.folder))
         # To the last rank alone: all end in the same step.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,15 @@ namespace tactoid {
 class Decomposition;  // simulation/decomposition.hpp
 struct SharedBody;    // simulation/decomposition.hpp
 
+/// How the ranks add up what several of them contribute to: forces on particles at their borders, energies.
+enum class SumOrder {
+  /// In the order of one process: the same bits for any number of ranks. A row at a border is evaluated by each rank that needs it.
+  of_one_process,
+  /// Rank after rank: each row is evaluated once, and forces go back to the ranks that own their particles. The same bits for the same division; for
+  /// another number of ranks the same but for round-off.
+  of_ranks
+};
+
 /// The processes (ranks, in the words of MPI) that compute one simulation together. The library knows them by this interface
 /// alone; <tactoid/mpi.hpp> implements it. Calls are a few per step, never per particle, so that they may be virtual.
 /// *Collective* functions must be called by all ranks, in the same order.
@@ -23,6 +33,8 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
   virtual ~Ranks() = default;
 
+  SumOrder sum_order = SumOrder::of_one_process;  ///< of the simulations that are composed from now on; the same on all ranks
+
   [[nodiscard]] virtual int rank() const = 0;  ///< of this process, in [0, size())
   [[nodiscard]] virtual int size() const = 0;  ///< number of processes
 
@@ -30,6 +42,8 @@ class Ranks {
   [[nodiscard]] virtual long largest(long number) = 0;
   /// What rank `of` gives, for all. Collective.
   [[nodiscard]] virtual std::string text_of(int of, const std::string& text) = 0;
+  /// Numbers of which each rank knows some, for all: those of rank r are values[first[r]] .. values[first[r + 1] − 1]. Collective.
+  virtual void share(std::span<double> values, std::span<const std::size_t> first) = 0;
   /// Throws ParameterError on all ranks, with the first rank that differs from rank 0 and what of it, unless all give the same
   /// text. Collective.
   void require_same(std::string_view what, const std::string& text) {

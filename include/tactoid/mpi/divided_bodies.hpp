@@ -5,8 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
-#include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,8 +51,9 @@ class DividedBodies final : public Decomposition {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const auto begin = owner.begin() + static_cast<std::ptrdiff_t>(first);
       first += touched[b].size();
-      parts_.push_back(std::make_shared<PartOfBody>(comm_, bodies_[b], std::vector<int>(begin, owner.begin() + static_cast<std::ptrdiff_t>(first)), touched[b]));
-      sums_.emplace_back(comm_, parts_.back()->particle_owner);
+      parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], std::vector<int>(begin, owner.begin() + static_cast<std::ptrdiff_t>(first)), touched[b]));
+      if (ranks_.sum_order == SumOrder::of_ranks) sums_.emplace_back(SumByRank(comm_, parts_.back()->particle_owner));
+      else sums_.emplace_back(SumInOrder(comm_, parts_.back()->particle_owner));
       evaluated_pairs_ += parts_.back()->evaluated_pairs(*bodies_[b].table);
     }
     const auto is_known = [](const SharedBody& body, Index i) { return body.known_to_all[i] != 0; };
@@ -131,26 +133,16 @@ class DividedBodies final : public Decomposition {
     const auto n = static_cast<std::size_t>(ranks_.size());
     std::vector<Parcel> in(n), out(n);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      for (std::size_t r = 0; r < n; ++r) in[r].pieces.push_back({bodies_[b].motion, {}}), out[r].pieces.push_back({bodies_[b].motion, {}});
+      std::vector<std::vector<Index>> asked(n);
       const PartOfBody& part = *parts_[b];
       for (Index i = 0; i < part.needed.size(); ++i)
         if (part.needed[i] && part.particle_owner[i] != ranks_.rank() && !bodies_[b].known_to_all[i])
-          in[static_cast<std::size_t>(part.particle_owner[i])].pieces[b].particles.push_back(i);
-      std::vector<int> asked(n), wanted(n), asked_at(n + 1, 0), wanted_at(n + 1, 0);
-      std::vector<Index> asking;
+          asked[static_cast<std::size_t>(part.particle_owner[i])].push_back(i);
+      std::vector<std::vector<Index>> wanted = exchange_lists(comm_, asked);
       for (std::size_t r = 0; r < n; ++r) {
-        const auto& list = in[r].pieces[b].particles;
-        asked[r] = as_count(list.size());
-        asked_at[r + 1] = asked_at[r] + asked[r];
-        asking.insert(asking.end(), list.begin(), list.end());
+        in[r].pieces.push_back({bodies_[b].motion, std::move(asked[r])});
+        out[r].pieces.push_back({bodies_[b].motion, std::move(wanted[r])});
       }
-      succeeded(MPI_Alltoall(asked.data(), 1, MPI_INT, wanted.data(), 1, MPI_INT, comm_));
-      std::partial_sum(wanted.begin(), wanted.end(), wanted_at.begin() + 1);
-      std::vector<Index> answer(static_cast<std::size_t>(wanted_at[n]) + 1);
-      static_assert(sizeof(Index) == sizeof(std::uint32_t));
-      asking.push_back(0);
-      succeeded(MPI_Alltoallv(asking.data(), asked.data(), asked_at.data(), MPI_UINT32_T, answer.data(), wanted.data(), wanted_at.data(), MPI_UINT32_T, comm_));
-      for (std::size_t r = 0; r < n; ++r) out[r].pieces[b].particles.assign(answer.begin() + wanted_at[r], answer.begin() + wanted_at[r + 1]);
     }
     neighbors_ = std::make_unique<ParcelsToNeighbors>(comm_, std::move(out), std::move(in));
   }
@@ -163,7 +155,7 @@ class DividedBodies final : public Decomposition {
   MPI_Comm comm_;
   std::vector<SharedBody> bodies_;
   std::vector<std::shared_ptr<PartOfBody>> parts_;
-  std::vector<SumInOrder> sums_;
+  std::vector<std::function<double(std::span<const double>)>> sums_;
   std::unique_ptr<ParcelsToAll> known_, whole_;
   std::unique_ptr<ParcelsToNeighbors> neighbors_;
   std::size_t evaluated_pairs_ = 0;

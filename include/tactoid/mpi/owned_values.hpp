@@ -8,6 +8,7 @@
 
 #include <mpi.h>
 
+#include <tactoid/core/parallel.hpp>
 #include <tactoid/mpi/parcels.hpp>
 
 namespace tactoid::mpi {
@@ -52,6 +53,46 @@ class OwnedValues {
   int rank_ = 0;
   std::vector<Index> items_;        // rank by rank
   std::vector<std::size_t> first_;  // of each rank in items_
+};
+
+/// Sums and maxima over the ranks of what each gives; sums rank after rank, so that all have the same bits. Collective.
+inline void reduce(MPI_Comm ranks, std::span<double> sums, std::span<double> maxima) {
+  int size = 1;
+  MPI_Comm_size(ranks, &size);
+  const std::size_t width = sums.size() + maxima.size();
+  std::vector<double> own(sums.begin(), sums.end()), all(width * static_cast<std::size_t>(size));
+  own.insert(own.end(), maxima.begin(), maxima.end());
+  MPI_Request request = MPI_REQUEST_NULL;
+  succeeded(MPI_Iallgather(own.data(), as_count(width), MPI_DOUBLE, all.data(), as_count(width), MPI_DOUBLE, ranks, &request));
+  wait(request);
+  std::fill(sums.begin(), sums.end(), 0.0);
+  for (std::size_t r = 0; r < static_cast<std::size_t>(size); ++r) {
+    const double* of_rank = all.data() + r * width;
+    for (double& sum : sums) sum += *of_rank++;
+    for (double& most : maxima) most = std::max(most, *of_rank++);
+  }
+}
+
+/// Sums over items that each belong to one rank: each rank its own, then rank after rank.
+class SumByRank {
+ public:
+  /// `owner` of each item, the same on all ranks. `ranks` must outlive it.
+  SumByRank(MPI_Comm ranks, const std::vector<int>& owner) : ranks_(ranks) {
+    int rank = 0;
+    MPI_Comm_rank(ranks_, &rank);
+    for (std::size_t i = 0; i < owner.size(); ++i)
+      if (owner[i] == rank) own_.push_back(static_cast<Index>(i));
+  }
+  /// Σ terms over all items, each rank giving those that it owns. Collective.
+  [[nodiscard]] double operator()(std::span<const double> terms) const {
+    double sum = parallel_sum(own_.size(), [&](std::size_t k) { return terms[own_[k]]; });
+    reduce(ranks_, {&sum, 1}, {});
+    return sum;
+  }
+
+ private:
+  MPI_Comm ranks_;
+  std::vector<Index> own_;
 };
 
 /// Sums over items that each belong to one rank, with the bits of parallel_sum: each of its parts is summed, in its order, by the

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <utility>
@@ -48,6 +49,9 @@ struct Piece {
   std::vector<Index> particles;  ///< in the order in which they are sent
 };
 
+/// What becomes of a number at the place where it arrives.
+enum class Arrival { replaces, adds };
+
 /// What one rank tells another, or all others: pieces of several bodies, one behind the other.
 struct Parcel {
   std::vector<Piece> pieces;  ///< in the order of the bodies
@@ -64,14 +68,12 @@ struct Parcel {
       for (const Index i : piece.particles)
         for (const Field* field : piece.fields) out = std::copy_n((*field)[i].data(), 3, out);
   }
-  /// Copies to the fields.
-  void unpack(const double* in) const {
+  /// Copies to the fields, or adds to them.
+  void unpack(const double* in, Arrival arrival = Arrival::replaces) const {
     for (const Piece& piece : pieces)
       for (const Index i : piece.particles)
-        for (Field* field : piece.fields) {
-          std::copy_n(in, 3, (*field)[i].data());
-          in += 3;
-        }
+        for (Field* field : piece.fields)
+          for (int k = 0; k < 3; ++k, ++in) (*field)[i][k] = arrival == Arrival::adds ? (*field)[i][k] + *in : *in;
   }
 };
 
@@ -93,6 +95,27 @@ struct Layout {
     buffer.resize(std::max<std::size_t>(size, 1));
   }
 };
+
+/// Lists for each rank, which it gets: the lists that all ranks have for this one. Collective.
+[[nodiscard]] inline std::vector<std::vector<Index>> exchange_lists(MPI_Comm ranks, const std::vector<std::vector<Index>>& lists) {
+  const std::size_t n = lists.size();
+  std::vector<int> counts(n), places(n + 1, 0), arriving(n), arriving_places(n + 1, 0);
+  std::vector<Index> out;
+  for (std::size_t r = 0; r < n; ++r) {
+    counts[r] = as_count(lists[r].size());
+    places[r + 1] = places[r] + counts[r];
+    out.insert(out.end(), lists[r].begin(), lists[r].end());
+  }
+  succeeded(MPI_Alltoall(counts.data(), 1, MPI_INT, arriving.data(), 1, MPI_INT, ranks));
+  std::partial_sum(arriving.begin(), arriving.end(), arriving_places.begin() + 1);
+  std::vector<Index> in(static_cast<std::size_t>(arriving_places[n]) + 1);
+  static_assert(sizeof(Index) == sizeof(std::uint32_t));
+  out.push_back(0);
+  succeeded(MPI_Alltoallv(out.data(), counts.data(), places.data(), MPI_UINT32_T, in.data(), arriving.data(), arriving_places.data(), MPI_UINT32_T, ranks));
+  std::vector<std::vector<Index>> result(n);
+  for (std::size_t r = 0; r < n; ++r) result[r].assign(in.begin() + arriving_places[r], in.begin() + arriving_places[r + 1]);
+  return result;
+}
 
 /// Tells all ranks what each of them owns: one parcel per rank, its own at its place.
 class ParcelsToAll {
@@ -135,7 +158,7 @@ class ParcelsToNeighbors {
  public:
   ParcelsToNeighbors() = default;
   /// `out` and `in`: one parcel per rank, empty where there is nothing to tell; `out` of one rank is `in` of the other.
-  ParcelsToNeighbors(MPI_Comm ranks, std::vector<Parcel> out, std::vector<Parcel> in) {
+  ParcelsToNeighbors(MPI_Comm ranks, std::vector<Parcel> out, std::vector<Parcel> in, Arrival arrival = Arrival::replaces) : arrival_(arrival) {
     std::vector<int> to, from;
     for (std::size_t r = 0; r < out.size(); ++r)
       if (out[r].size() > 0) to.push_back(static_cast<int>(r)), out_.push_back(std::move(out[r]));
@@ -158,10 +181,10 @@ class ParcelsToNeighbors {
     succeeded(MPI_Ineighbor_alltoallv(sent_.buffer.data(), sent_.counts.data(), sent_.places.data(), MPI_DOUBLE, received_.buffer.data(), received_.counts.data(),
                                       received_.places.data(), MPI_DOUBLE, neighbors_, &request_));
   }
-  /// Waits, and sets the fields.
+  /// Waits, and sets the fields, or adds to them, rank after rank.
   void end() {
     wait(request_);
-    for (std::size_t n = 0; n < in_.size(); ++n) in_[n].unpack(received_.buffer.data() + received_.places[n]);
+    for (std::size_t n = 0; n < in_.size(); ++n) in_[n].unpack(received_.buffer.data() + received_.places[n], arrival_);
   }
   /// Numbers that this rank sends in every step.
   [[nodiscard]] std::size_t sent() const {
@@ -171,6 +194,7 @@ class ParcelsToNeighbors {
   }
 
  private:
+  Arrival arrival_ = Arrival::replaces;
   std::vector<Parcel> out_, in_;
   Layout sent_, received_;
   MPI_Comm neighbors_ = MPI_COMM_NULL;

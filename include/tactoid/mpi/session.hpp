@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -88,6 +89,17 @@ class Session final : public Ranks {
     succeeded(MPI_Ibcast(result.data(), as_count(result.size()), MPI_CHAR, of, ranks_, &request));
     wait(request);
     return result;
+  }
+  void share(std::span<double> values, std::span<const std::size_t> first) override {
+    if (size_ == 1) return;
+    std::vector<int> counts, places;
+    for (std::size_t r = 0; r + 1 < first.size(); ++r) {
+      counts.push_back(as_count(first[r + 1] - first[r]));
+      places.push_back(as_count(first[r]));
+    }
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values.data(), counts.data(), places.data(), MPI_DOUBLE, ranks_, &request));
+    wait(request);
   }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) override {
     require_same("version of Tactoid", version);

@@ -283,6 +283,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     bool rates = false;
     for_each_region([&](const auto& region, Index) { rates = rates || needs_rate(region); });
     if (rates) pack_motion();
+    if (share_)
+      for (const Index i : share_->abroad) force[i].setZero();
     if (!earlier_.empty()) relative_ = displacement_in_table();
     const Loop loop = force_loop();
     for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
@@ -295,10 +297,9 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
           chunks_[c] = loop.template pass<false>(region, chunk, time_step, advance);
       });
     });
-    if (share_) gather_chunks();
-    BodyTotals totals;
-    for (const ChunkResult& part : chunks_) totals += part.totals;
-    return totals;
+    if (share_) meet_other_ranks();
+    find_totals();
+    return found_.totals;
   }
 
   /// Makes the histories of the last add_internal_forces(…, true) those of the body.
@@ -307,27 +308,18 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   }
 
   /// The first point whose volume ratio is not positive (or is NaN) after add_internal_forces; points() if none.
-  [[nodiscard]] std::size_t failed_point() const {
-    std::size_t failed = no_failure;
-    for (const ChunkResult& chunk : chunks_) failed = std::min(failed, chunk.failure);
-    return failed == no_failure ? table_.points() : failed;
-  }
+  [[nodiscard]] std::size_t failed_point() const { return found_.failure == no_failure ? table_.points() : found_.failure; }
 
   // --- stable step -------------------------------------------------------------------------------------------
   /// Largest squared wave number that region r's points carry in the present configuration, 1/m², as bounded by
   /// the shape of the rows alone: max_q k_q² ‖F_q⁻¹‖². Known after add_internal_forces.
-  [[nodiscard]] std::vector<double> region_wave_numbers() const {
-    std::vector<double> largest(sizeof...(Ms), 0.0);
-    for (std::size_t c = 0; c < table_.chunks.size(); ++c)
-      largest[table_.chunks[c].region] = std::max(largest[table_.chunks[c].region], chunks_[c].stretch);
-    return largest;
-  }
+  [[nodiscard]] const std::vector<double>& region_wave_numbers() const { return found_.stretch; }
 
   /// Largest volume ratio J over the points of a body with a director. Known after add_internal_forces.
   [[nodiscard]] double largest_volume_ratio() const
     requires has_director
   {
-    return share_ ? largest_volume_ratio_ : *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
+    return found_.largest_volume_ratio;
   }
 
   // --- views -------------------------------------------------------------------------------------------------
@@ -364,7 +356,6 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   void share_with(std::shared_ptr<BodyShare> share) {
     share_ = std::move(share);
     share_->drop_rows(table_);
-    if constexpr (has_director) largest_volume_ratio_ = *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
   }
   /// Makes the rates of the director known at all points. Collective, as Decomposition's functions; nothing in a body that is not shared.
   void complete_rates() {
@@ -402,11 +393,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     archive("displacement", displacement);
     archive("velocity", velocity);
     archive("force", force);
-    std::vector<double> stretch(chunks_.size());
-    for (std::size_t c = 0; c < chunks_.size(); ++c) stretch[c] = chunks_[c].stretch;
-    archive("chunk_stretch", stretch);
-    if constexpr (Archive::restoring)
-      for (std::size_t c = 0; c < chunks_.size(); ++c) chunks_[c].stretch = stretch[c];
+    archive("region_wave_numbers", found_.stretch);
     if constexpr (has_director) {
       archive("director", director);
       archive("director_flux", director_flux);
@@ -415,7 +402,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       archive("point_volume_ratio", point_volume_ratio_);
     }
     for_each_region([&](auto& region, Index r) { archive.part("region_" + std::to_string(r), region); });
-    if constexpr (Archive::restoring && has_director) largest_volume_ratio_ = *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
+    if constexpr (Archive::restoring && has_director) found_.largest_volume_ratio = *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
   }
 
   /// Bytes of the tables and fields of the body.
@@ -432,10 +419,19 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   using Loop = ForceLoop<dimension, Director, Entry>;
   static constexpr std::size_t no_failure = ChunkResult{}.failure;
 
+  /// What the force loop found in the whole body.
+  struct Found {
+    BodyTotals totals;
+    std::vector<double> stretch = std::vector<double>(sizeof...(Ms), 0.0);  // of each region
+    double largest_volume_ratio = 1.0;
+    std::size_t failure = no_failure;
+  };
+
   /// Everything that depends on the rows of the table and not on their values.
   void follow_table() {
     table_.mass_shares = std::vector<double>();  // an assignment of {} would keep the memory
     chunks_.assign(table_.chunks.size(), {});
+    found_ = {};
     point_scale_ = wave_numbers();
     if constexpr (std::is_same_v<Entry, SingleTableEntry>) table_.use_single_precision();
     longest_row_ = 0;
@@ -719,6 +715,53 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     });
   }
 
+  /// Exchanges what the force loop found with the other processes, in the order in which all of them sum.
+  void meet_other_ranks() {
+    if (share_->order == SumOrder::of_one_process) return gather_chunks();
+    share_->return_forces();
+    if constexpr (has_director) {
+      const auto pack = [&](const std::vector<Index>& points, std::vector<double>& values, const auto& copy) {
+        values.resize(10 * points.size());
+        for (std::size_t k = 0; k < points.size(); ++k) {
+          for (int a = 0; a < 9; ++a) copy(point_rate_[points[k]](a % 3, a / 3), values[10 * k + static_cast<std::size_t>(a)]);
+          copy(point_volume_ratio_[points[k]], values[10 * k + 9]);
+        }
+      };
+      std::vector<double> given, taken;
+      pack(share_->given_points, given, [](double of_point, double& value) { value = of_point; });
+      taken.resize(10 * share_->taken_points.size());
+      share_->exchange_points(given, taken, 10);
+      pack(share_->taken_points, taken, [](double& of_point, double value) { of_point = value; });
+    }
+  }
+
+  /// Sums up what was found in the chunks.
+  void find_totals() {
+    const bool by_rank = share_ && share_->order == SumOrder::of_ranks;
+    found_ = {};
+    found_.largest_volume_ratio = 0.0;
+    for (std::size_t c = 0; c < chunks_.size(); ++c) {
+      found_.totals += chunks_[c].totals;
+      double& stretch = found_.stretch[table_.chunks[c].region];
+      stretch = std::max(stretch, chunks_[c].stretch);
+      found_.largest_volume_ratio = std::max(found_.largest_volume_ratio, chunks_[c].largest_volume_ratio);
+      found_.failure = std::min(found_.failure, chunks_[c].failure);
+    }
+    if (!by_rank) return;
+    BodyTotals& t = found_.totals;
+    std::array<double, 4> sums{t.strain_energy, t.stabilization_energy, t.dissipated_power, t.active_power};
+    std::vector<double> maxima = found_.stretch;
+    maxima.push_back(found_.largest_volume_ratio);
+    maxima.push_back(found_.failure == no_failure ? 0.0 : static_cast<double>(table_.points() - found_.failure));  // the first point has the largest
+    share_->reduce(sums, maxima);
+    t = {sums[0], sums[1], sums[2], sums[3]};
+    found_.failure = maxima.back() == 0.0 ? no_failure : table_.points() - static_cast<std::size_t>(maxima.back());
+    maxima.pop_back();
+    found_.largest_volume_ratio = maxima.back();
+    maxima.pop_back();
+    found_.stretch = std::move(maxima);
+  }
+
   /// Energies, stretches and failures of all chunks from the processes that own them.
   void gather_chunks() {
     constexpr std::size_t width = 7;
@@ -727,18 +770,14 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       if (!share_->own_chunk[c]) continue;
       const BodyTotals& t = chunks_[c].totals;
       const double failure = chunks_[c].failure == no_failure ? -1.0 : static_cast<double>(chunks_[c].failure);
-      double ratio = 0.0;
-      if constexpr (has_director)
-        for (std::size_t q = table_.chunks[c].begin; q < table_.chunks[c].end; ++q) ratio = std::max(ratio, point_volume_ratio_[q]);
-      const std::array<double, width> own{t.strain_energy, t.stabilization_energy, t.dissipated_power, t.active_power, chunks_[c].stretch, failure, ratio};
+      const std::array<double, width> own{t.strain_energy,    t.stabilization_energy,          t.dissipated_power, t.active_power,
+                                          chunks_[c].stretch, chunks_[c].largest_volume_ratio, failure};
       std::copy(own.begin(), own.end(), values.data() + c * width);
     }
     share_->gather_chunks(values, width);
-    largest_volume_ratio_ = 0.0;
     for (std::size_t c = 0; c < table_.chunks.size(); ++c) {
       const double* v = values.data() + c * width;
-      chunks_[c] = {{v[0], v[1], v[2], v[3]}, v[4], v[5] < 0.0 ? no_failure : static_cast<std::size_t>(v[5])};
-      largest_volume_ratio_ = std::max(largest_volume_ratio_, v[6]);
+      chunks_[c] = {{v[0], v[1], v[2], v[3]}, v[4], v[5], v[6] < 0.0 ? no_failure : static_cast<std::size_t>(v[6])};
     }
   }
 
@@ -770,11 +809,11 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   Field relative_;                    // displacement since the table, where the reference was updated
   std::size_t longest_row_ = 0;
   std::vector<ChunkResult> chunks_;
+  Found found_;
   std::vector<Tensor3> point_rate_;
   std::vector<double> point_volume_ratio_;
   std::vector<std::vector<Index>> points_of_particle_;
   std::shared_ptr<BodyShare> share_;    // null where this process computes the whole body
-  double largest_volume_ratio_ = 1.0;   // of a shared body with a director
 };
 
 /// Deduced without a director field.

@@ -12,10 +12,12 @@
 
 namespace tactoid {
 
-/// The part of one body that this rank computes. Each chunk of points belongs to one rank, and each particle too. A rank
-/// evaluates its own chunks, and beyond them every row that touches one of its particles: so forces at its particles are
-/// complete, summed in the order of one process, and no force is exchanged. Numbers of particles and points stay those of the
-/// whole body.
+/// The part of one body that this rank computes. Each chunk of points belongs to one rank, and each particle too. Numbers of
+/// particles and points stay those of the whole body.
+///
+/// In the order of one process a rank evaluates its own chunks, and beyond them every row that touches one of its particles: so forces at its
+/// particles are complete, and no force is exchanged. In the order of the ranks it evaluates its own chunks alone; what they do to
+/// particles of other ranks is taken there by return_forces().
 class BodyShare {
  public:
   BodyShare() = default;
@@ -23,14 +25,27 @@ class BodyShare {
   BodyShare& operator=(const BodyShare&) = delete;
   virtual ~BodyShare() = default;
 
+  SumOrder order = SumOrder::of_one_process;  ///< of what is added up
   std::vector<char> own_chunk;  ///< per chunk of the table: 1 where it belongs to this rank
   std::vector<char> evaluated;  ///< per point: 1 where this rank evaluates the row
   std::vector<Index> local;     ///< particles that this rank owns, that its rows touch, or that are known to all; ascending
+
+  ///@{
+  /// In the order of the ranks: particles of other ranks that rows of this one touch; points that are evaluated here, and the particles
+  /// to which they belong are those of other ranks; and those where it is the other way round.
+  std::vector<Index> abroad, given_points, taken_points;
+  ///@}
 
   /// Empties the rows that are not evaluated; does nothing where all rows must stay.
   virtual void drop_rows(PointTable& table) const = 0;
   /// Values of chunks, `per_chunk` numbers each: those of own chunks in, those of all chunks out. Collective.
   virtual void gather_chunks(std::span<double> values, std::size_t per_chunk) = 0;
+  /// Adds to what own rows do to own particles what those of other ranks do: SharedBody::returned. Collective.
+  virtual void return_forces() = 0;
+  /// Values of given_points, `per_point` numbers each, to where they are taken_points. Collective.
+  virtual void exchange_points(std::span<const double> given, std::span<double> taken, std::size_t per_point) = 0;
+  /// Sums and maxima over the ranks, of what each gives. Collective.
+  virtual void reduce(std::span<double> sums, std::span<double> maxima) = 0;
   /// Values of points, `per_point` numbers each: those of the points of own chunks in, those of all out. Collective.
   virtual void gather_points(std::span<double> values, std::size_t per_point) = 0;
 };
@@ -42,6 +57,7 @@ struct SharedBody {
   std::vector<char> known_to_all;          ///< per particle: 1 where every rank must know its motion in every step
   bool keep_rows = false;                  ///< no rank drops rows
   std::vector<Field*> motion;              ///< what the evaluation of a row reads of its particles: u, v, h
+  std::vector<Field*> returned;            ///< what rows add to particles: forces, the director's flux
   std::vector<Field*> known;               ///< what every rank must know of particles that are known to all, `motion` included
   std::vector<Field*> whole;               ///< what complete() makes known
 };
@@ -65,7 +81,7 @@ class Decomposition {
   virtual void end_exchange() = 0;
   /// Makes the fields of all particles known to all ranks.
   virtual void complete() = 0;
-  /// Σ_i term_i over the particles of a body, each rank giving those that it owns: with the bits of parallel_sum.
+  /// Σ_i term_i over the particles of a body, each rank giving those that it owns: in the order of its session.
   [[nodiscard]] virtual double sum(std::size_t body, std::span<const double> terms) = 0;
   /// The text that the rank gives to which a point of a body belongs, behind the number of that rank.
   [[nodiscard]] virtual std::string told_by_owner(std::size_t body, std::size_t point, const std::string& text) = 0;

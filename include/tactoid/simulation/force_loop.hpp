@@ -53,6 +53,7 @@ struct PointSample {
 struct ChunkResult {
   BodyTotals totals;                                               ///< of its points
   double stretch = 0.0;                                            ///< max_q k_q² ‖F_q⁻¹‖², 1/m²
+  double largest_volume_ratio = 0.0;                               ///< max_q J_q, where a director sees it
   std::size_t failure = std::numeric_limits<std::size_t>::max();   ///< first point whose volume ratio is not positive, or is NaN
 };
 
@@ -221,6 +222,7 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
       for (std::size_t q = first; q < last; ++q) {
         for (int a = 0; a < 9; ++a) point_rate[q](a % 3, a / 3) = lane(A(a % 3, a / 3), int(q - first));
         point_volume_ratio[q] = lane(F.determinant, int(q - first)) * (volume_in_table[q - first] / volume[q - first]);
+        result.largest_volume_ratio = std::max(result.largest_volume_ratio, point_volume_ratio[q]);
       }
     }
     for (std::size_t q = first; q < last; ++q) {

@@ -522,9 +522,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     });
     end_exchange();
     for_each_body([&](auto& body, std::size_t b) {
-      body.for_each_particle([&](std::size_t i) { body.force[i].setZero(); });
-      if (body.particle_values().identity()) body.for_each_particle([&](std::size_t i) { body.force[i] += fields_[b].force[i]; });
-      else body.particle_values().distribute(fields_[b].force, body.force);
+      if (body.particle_values().identity()) {
+        body.for_each_particle([&](std::size_t i) { body.force[i] = fields_[b].force[i]; });
+      } else {
+        body.for_each_particle([&](std::size_t i) { body.force[i].setZero(); });
+        body.particle_values().distribute(fields_[b].force, body.force);
+      }
       energies.internal += add_internal_forces(body, b, time_step);
       energies.kinetic += sum_over_particles(b, body, [&](std::size_t i) {
         return 0.5 * body.masses()[i] * present_velocity(body, b, i).squaredNorm();
@@ -686,7 +689,9 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if (subcycling()) parts.back().whole.insert(parts.back().whole.end(), {&pace_[b].internal, &pace_[b].held});
     });
     decomposition_ = ranks.decompose(std::move(parts));
-    for_each_body([&](auto& body, std::size_t b) { body.share_with(decomposition_->share(b)); });
+    for_each_body([&](auto& body, std::size_t b) {
+      body.share_with(decomposition_->share(b));
+    });
   }
   template <class Body>
   [[nodiscard]] SharedBody shared_body(Body& body, BodyFields& fields, std::size_t b) {
@@ -695,6 +700,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     part.keep_rows = synchronous<I> || !body.table().value_based();
     part.motion = {&body.displacement, &body.velocity};
     if constexpr (Body::has_director) part.motion.push_back(&body.director);
+    part.returned = {&body.force};
+    if constexpr (Body::has_director) part.returned.push_back(&body.director_flux);
     part.known = part.motion;
     part.known.push_back(&body.force);  // velocities at the present instant need it
     part.whole = part.known;
