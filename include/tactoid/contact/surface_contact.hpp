@@ -54,7 +54,7 @@ class ContactPass {
   TermEnergy apply(const Law& law, const ParticleFields& slave, const ParticleFields& master, ContactArea area,
                    double factor) {
     locate(slave);
-    tracker_.update(master_, points_, master.position, law.reach());
+    tracker_.update(master_, points_, master.position, law.reach(), master.ranks);
     const auto closest = tracker_.closest();
     parallel_for(points_.size(), [&](std::size_t q) {
       State& s = states_[q];

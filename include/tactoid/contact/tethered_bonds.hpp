@@ -103,7 +103,7 @@ class TetherSites {
   void locate(const ParticleFields& a, const ParticleFields& b, double reach) {
     for (std::size_t q = 0; q < points_.size(); ++q)
       points_[q] = slave_.interpolate(quadrature_.facet_of(q), quadrature_.point(q).local, a.position);
-    tracker_.update(master_, points_, b.position, reach);
+    tracker_.update(master_, points_, b.position, reach, b.ranks);
   }
 
   /// Anchors each site's bonds, which start in the facet anchor_facet_, at the point of B that is nearest to where extension_ leads; clears extension_.

@@ -10,6 +10,7 @@
 #include <tactoid/contact/closest_point.hpp>
 #include <tactoid/contact/surface.hpp>
 #include <tactoid/core/parallel.hpp>
+#include <tactoid/core/ranks.hpp>
 
 namespace tactoid {
 
@@ -21,7 +22,7 @@ namespace tactoid {
 /// query points and surface together have moved further than `search_after` mean facet sizes (of the first one) since the last one: where
 /// two parts of the surface that are no neighbours are equally near, the change from one to the other is late by at
 /// most that much. Queries are independent: the same bits for any number of threads. No allocation between global
-/// searches.
+/// searches in one process.
 template <int D>
 class ClosestPointTracker {
  public:
@@ -33,9 +34,10 @@ class ClosestPointTracker {
               double reach = std::numeric_limits<double>::infinity());
 
   /// Closest points at the present positions. Query points whose gap cannot have come below `reach` (m) since the
-  /// last global search are not followed: they keep the gap of that search, which is larger than `reach`.
+  /// last global search are not followed: they keep the gap of that search, which is larger than `reach`. With `ranks`, who must
+  /// all call this with the same, each follows a share of the points.
   void update(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
-              double reach = std::numeric_limits<double>::infinity());
+              double reach = std::numeric_limits<double>::infinity(), Ranks* ranks = nullptr);
 
   /// Local minimum of the distance from q (m) over a facet and its neighbours, from facet `f` downhill.
   static ClosestPoint<D> walk(const FacetSurface<D>& surface, Index f, std::span<const Vector4> x, const Vector3& q);
@@ -46,7 +48,6 @@ class ClosestPointTracker {
   /// Where each query point is on the surface, and where everything was at the last global search.
   template <class Archive>
   void state(Archive& archive) {
-    using Place = Eigen::Matrix<double, D + 6, 1>;  // local, point, normal, gap
     const std::size_t n = closest_.size();
     std::vector<Index> facet(n);
     std::vector<char> on_rim(n);
@@ -55,7 +56,7 @@ class ClosestPointTracker {
       const ClosestPoint<D>& c = closest_[i];
       facet[i] = c.facet;
       on_rim[i] = c.on_rim ? 1 : 0;
-      place[i] << Eigen::Map<const Eigen::Matrix<double, D - 1, 1>>(c.local.data()), c.point, c.normal, c.gap;
+      place[i] = place_of(c);
     }
     archive("facet", facet);
     archive("on_rim", on_rim);
@@ -71,14 +72,29 @@ class ClosestPointTracker {
       ClosestPoint<D>& c = closest_[i];
       c.facet = facet[i];
       c.on_rim = on_rim[i] != 0;
-      for (std::size_t k = 0; k < c.local.size(); ++k) c.local[k] = place[i][static_cast<Eigen::Index>(k)];
-      c.point = place[i].template segment<3>(D - 1);
-      c.normal = place[i].template segment<3>(D + 2);
-      c.gap = place[i][D + 5];
+      put(place[i], c);
     }
+    find_awake();
   }
 
  private:
+  using Place = Eigen::Matrix<double, D + 6, 1>;  // local, point, normal, gap
+  [[nodiscard]] static Place place_of(const ClosestPoint<D>& c) {
+    Place place;
+    place << Eigen::Map<const Eigen::Matrix<double, D - 1, 1>>(c.local.data()), c.point, c.normal, c.gap;
+    return place;
+  }
+  static void put(const Place& place, ClosestPoint<D>& c) {
+    for (std::size_t k = 0; k < c.local.size(); ++k) c.local[k] = place[static_cast<Eigen::Index>(k)];
+    c.point = place.template segment<3>(D - 1);
+    c.normal = place.template segment<3>(D + 2);
+    c.gap = place[D + 5];
+  }
+  /// Points that must be followed until the next global search.
+  void find_awake();
+  /// Follows some of them: numbers [begin, end) of awake_.
+  void follow(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x, std::size_t begin, std::size_t end);
+
   /// A facet lies in a flat cylinder around its middle.
   struct Extent {
     Vector3 middle, normal;
@@ -98,6 +114,7 @@ class ClosestPointTracker {
 
   std::vector<ClosestPoint<D>> closest_;
   std::vector<char> asleep_;         // too far away to matter before the next global search
+  std::vector<Index> awake_;         // the others
   Field queries_then_, nodes_then_;  // where everything was at the last global search
   double facet_size_ = 0.0;
   double reach_ = 0.0;  // of the last global search

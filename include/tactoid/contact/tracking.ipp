@@ -64,20 +64,58 @@ void ClosestPointTracker<D>::search(const FacetSurface<D>& surface, std::span<co
     closest_[i] = complete(surface, best, projection, x, q);
     asleep_[i] = closest_[i].gap > reach + search_after * facet_size_;
   });
+  find_awake();
+}
+
+template <int D>
+void ClosestPointTracker<D>::find_awake() {
+  awake_.clear();
+  for (Index i = 0; i < asleep_.size(); ++i)
+    if (!asleep_[i]) awake_.push_back(i);
+}
+
+template <int D>
+void ClosestPointTracker<D>::follow(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
+                                    std::size_t begin, std::size_t end) {
+  parallel_for(end - begin, [&](std::size_t k) {
+    const Index i = awake_[begin + k];
+    closest_[i] = walk(surface, closest_[i].facet, x, queries[i].template head<3>());
+  });
 }
 
 template <int D>
 void ClosestPointTracker<D>::update(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
-                                    double reach) {
+                                    double reach, Ranks* ranks) {
   const double allowed = search_after * facet_size_;
   if (closest_.size() != queries.size() || reach > reach_ || !(motion(surface, queries, x) <= allowed)) {
     search(surface, queries, x, reach);
     return;
   }
-  parallel_for(queries.size(), [&](std::size_t i) {
-    if (asleep_[i]) return;
-    closest_[i] = walk(surface, closest_[i].facet, x, queries[i].template head<3>());
-  });
+  constexpr std::size_t few = 64;  // are followed sooner than told
+  if (ranks == nullptr || awake_.size() < few * static_cast<std::size_t>(ranks->size())) return follow(surface, queries, x, 0, awake_.size());
+
+  const auto size = static_cast<std::size_t>(ranks->size()), rank = static_cast<std::size_t>(ranks->rank());
+  constexpr std::size_t width = D + 8;
+  std::vector<std::size_t> first(size + 1);
+  for (std::size_t r = 0; r <= size; ++r) first[r] = awake_.size() * r / size;
+  follow(surface, queries, x, first[rank], first[rank + 1]);
+  std::vector<double> values(awake_.size() * width);
+  for (std::size_t k = first[rank]; k < first[rank + 1]; ++k) {
+    const ClosestPoint<D>& c = closest_[awake_[k]];
+    double* v = values.data() + k * width;
+    v[0] = c.facet;
+    v[1] = c.on_rim ? 1.0 : 0.0;
+    Eigen::Map<Place>(v + 2) = place_of(c);
+  }
+  for (std::size_t& f : first) f *= width;
+  ranks->share(values, first);
+  for (std::size_t k = 0; k < awake_.size(); ++k) {
+    ClosestPoint<D>& c = closest_[awake_[k]];
+    const double* v = values.data() + k * width;
+    c.facet = static_cast<Index>(v[0]);
+    c.on_rim = v[1] != 0.0;
+    put(Eigen::Map<const Place>(v + 2), c);
+  }
 }
 
 template <int D>

@@ -23,8 +23,8 @@ struct ParticlesOnSurface {
   std::vector<double> gaps;      ///< signed, per particle of the first body, m
   Field forces;                  ///< scratch: on the particles, N
   std::vector<double> energies;  ///< scratch: energy (J) or power (W) of each particle
-  /// Brings closest points and gaps to the present positions, m.
-  void update(std::span<const Vector4> particles, std::span<const Vector4> surface);
+  /// Brings closest points and gaps to the present positions, m; `ranks`: as ClosestPointTracker takes them.
+  void update(std::span<const Vector4> particles, std::span<const Vector4> surface, Ranks* ranks = nullptr);
   /// For checkpoints: gaps, and the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) {
@@ -94,7 +94,7 @@ struct VanDerWaals {
  private:
   template <int D>
   TermEnergy apply_to(ParticlesOnSurface<D>& p, const ParticleFields& a, const ParticleFields& b) const {
-    p.update(a.position, b.position);
+    p.update(a.position, b.position, a.ranks);
     const auto closest = p.tracker.closest();
     p.forces.resize(closest.size());
     p.energies.resize(closest.size());

@@ -6,8 +6,8 @@
 namespace tactoid {
 
 template <int D>
-void ParticlesOnSurface<D>::update(std::span<const Vector4> particles, std::span<const Vector4> surface) {
-  tracker.update(master, particles, surface);
+void ParticlesOnSurface<D>::update(std::span<const Vector4> particles, std::span<const Vector4> surface, Ranks* ranks) {
+  tracker.update(master, particles, surface, std::numeric_limits<double>::infinity(), ranks);
   gaps.resize(particles.size());
   const auto closest = tracker.closest();
   for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = closest[i].gap;

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/core/tensor.hpp>
 
 namespace tactoid {
@@ -16,6 +17,7 @@ struct ParticleFields {
   std::span<const double> mass;        ///< lumped mass, kg
   std::span<const double> volume;      ///< reference nodal volume, m³
   std::span<Vector4> force;            ///< N
+  Ranks* ranks = nullptr;              ///< processes that share the bodies, and evaluate each term together; null: this one alone
 };
 
 /// Which particles of a body a contact or a boundary term reads and loads. One that says `static constexpr Reads reads =

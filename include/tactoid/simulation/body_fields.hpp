@@ -13,6 +13,7 @@ struct BodyFields {
   Field force;      ///< of contacts and boundary terms, N
   std::vector<double> mass;    ///< lumped, kg
   std::vector<double> volume;  ///< reference nodal volume, m³
+  Ranks* ranks = nullptr;      ///< that share the body
 
   /// The reference configuration of a body, at rest.
   template <class Body>
@@ -62,7 +63,7 @@ struct BodyFields {
   }
 
   /// As contacts and terms take it; valid as long as this object.
-  [[nodiscard]] ParticleFields view() { return {reference, position, velocity, mass, volume, force}; }
+  [[nodiscard]] ParticleFields view() { return {reference, position, velocity, mass, volume, force, ranks}; }
 };
 
 }  // namespace tactoid

@@ -691,6 +691,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     decomposition_ = ranks.decompose(std::move(parts));
     for_each_body([&](auto& body, std::size_t b) {
       body.share_with(decomposition_->share(b));
+      fields_[b].ranks = &ranks;
     });
   }
   template <class Body>
