@@ -3,8 +3,8 @@
 //   mpirun -np 2 mpi_block --edge 54 --steps 20
 //   mpirun -np 1 --bind-to none mpi_block --edge 54 --steps 20 --threads 2
 //
-// Options: particles along an edge, steps, threads of each rank; 1 in --by-rank for sums in the order of the ranks, where each row is
-// evaluated once, and 1 in --scattered for a division that has nothing to do with places.
+// Options: particles along an edge, steps, threads of each rank; --sum-order ranks, where each row is evaluated
+// once; and 1 in --scattered for a division that has nothing to do with places.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
     if (name == "--edge") edge = std::max(value, 3);
     if (name == "--steps") steps = std::max(value, 1);
     if (name == "--threads") threads = std::max(value, 1);
-    if (name == "--by-rank" && value != 0) session.sum_order = SumOrder::of_ranks;
+    if (name == "--sum-order" && argv[i + 1] == std::string("ranks")) session.sum_order = SumOrder::of_ranks;
     if (name == "--scattered") scattered = value != 0;
   }
   set_thread_count(threads);

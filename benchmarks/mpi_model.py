@@ -1,9 +1,9 @@
 """What a step costs on many ranks: the model of include/tactoid/mpi/README.md, as a table.
 
-    python3 mpi_model.py [--order ranks --ns-per-pair 8 --latency 6e-6 --bandwidth 2e9 --surface 0]
+    python3 mpi_model.py [--sum-order ranks --ns-per-pair 8 --latency 6e-6 --bandwidth 2e9 --surface 0]
 
 A cube of N particles, cut into P cubes of n = N/P; a rank computes alone, one thread. Times in seconds, bytes as doubles of 8. Sums are made in the
-order of the ranks (SumOrder::of_ranks), or with --order process in that of one process.
+order of the ranks (SumOrder::of_ranks), or with --sum-order process in that of one process.
 """
 
 import argparse
@@ -24,23 +24,22 @@ def step(N, P, by_rank, c, latency, bandwidth, surface, contact):
         work = c * ROW * n
         tell = (48 + 24) * (grown - n) / bandwidth  # motion there, forces back
         sums = P * 80 / bandwidth
-        calls = 6
     else:
         work = c * ROW * grown
         tell = 48 * (min(a + 4 * REACH, whole) ** 3 - n) / bandwidth
         chunks = N / CHUNK * (56 / bandwidth + UNPACK)  # all chunks to all ranks
         sums = chunks + 8 * max(n, N / min(P, 64)) / bandwidth  # kinetic energy: 64 parts are summed by 64 ranks at most
-        calls = 5
     known = surface * 6 * whole**2
-    # Four fifths of a contact's time are the search of closest points, which is divided; what is found goes to all ranks.
+    # Four fifths of a contact's time follow closest points, which is divided; 88 bytes for each point go to all ranks.
     contacts = known * ((72 + 88) / bandwidth + contact * (0.2 + 0.8 / P))
+    calls = 6 if known > 0 else 4  # with a contact: what is known to all, and closest points
     wait = calls * latency * math.log2(P)
     return c * ROW * N / P, work, tell, sums, contacts, wait
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--order", choices=("ranks", "process"), default="ranks", help="in which sums are made")
+    parser.add_argument("--sum-order", choices=("ranks", "process"), default="ranks", help="in which sums are made")
     parser.add_argument("--ns-per-pair", type=float, default=8.0)
     parser.add_argument("--latency", type=float, default=6e-6, help="s per stage of a collective call")
     parser.add_argument("--bandwidth", type=float, default=2e9, help="bytes/s that one rank sends or receives")
@@ -51,7 +50,7 @@ def main():
     print("|---|---|---|---|---|---|---|---|---|---|")
     for N in (1e7, 1e8, 1e9):
         for P in (64, 256, 1024, 4096):
-            ideal, work, *rest = step(N, P, p.order == "ranks", 1e-9 * p.ns_per_pair, p.latency, p.bandwidth, p.surface, 1e-9 * p.contact_ns)
+            ideal, work, *rest = step(N, P, p.sum_order == "ranks", 1e-9 * p.ns_per_pair, p.latency, p.bandwidth, p.surface, 1e-9 * p.contact_ns)
             total = work + sum(rest)
             shares = " | ".join(f"{100 * x / total:.1f} %" for x in rest)
             print(f"| 10{'⁷⁸⁹'[int(round(math.log10(N))) - 7]} | {P} | {N / P:.3g} | {100 * (work / ideal - 1):.0f} % | {1e3 * total:.3g} | {shares} | {ideal / total:.2f} |")

@@ -93,6 +93,7 @@ struct OneOfTwo final : Ranks {
   [[nodiscard]] int size() const override { return 2; }
   [[nodiscard]] long largest(long number) override { return number; }
   [[nodiscard]] std::string text_of(int, const std::string& text) override { return text; }
+  void gather(std::span<double>, std::span<const std::size_t>) override {}
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody>) override { return nullptr; }
   [[nodiscard]] bool reports_failure(std::string_view, int) override { return true; }
 

@@ -9,6 +9,8 @@
 
 #else
 
+#include <tactoid/core/ranks.hpp>
+
 namespace tactoid::mpi {
 
 /// Without MPI: nothing.
@@ -17,6 +19,8 @@ class Session {
   Session(int&, char**&) {}  ///< does nothing
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
+
+  SumOrder sum_order = SumOrder::of_one_process;  ///< without effect
 };
 
 }  // namespace tactoid::mpi

@@ -34,8 +34,8 @@ class ClosestPointTracker {
               double reach = std::numeric_limits<double>::infinity());
 
   /// Closest points at the present positions. Query points whose gap cannot have come below `reach` (m) since the
-  /// last global search are not followed: they keep the gap of that search, which is larger than `reach`. With `ranks`, who must
-  /// all call this with the same, each follows a share of the points.
+  /// last global search are not followed: they keep the gap of that search, which is larger than `reach`. Collective with
+  /// `ranks`, all of which must give the same: each follows a share of the points, where there are enough of them.
   void update(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
               double reach = std::numeric_limits<double>::infinity(), Ranks* ranks = nullptr);
 

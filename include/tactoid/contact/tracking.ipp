@@ -36,6 +36,7 @@ void ClosestPointTracker<D>::search(const FacetSurface<D>& surface, std::span<co
   queries_then_.assign(queries.begin(), queries.end());
   nodes_then_.resize(surface.nodes.size());
   for (std::size_t k = 0; k < surface.nodes.size(); ++k) nodes_then_[k] = x[surface.nodes[k]];
+  find_awake();
   if (!std::isfinite(sum)) {  // a motion that broke down: the gaps say so
     for (auto& c : closest_) c.gap = std::numeric_limits<double>::quiet_NaN();
     return;
@@ -108,7 +109,7 @@ void ClosestPointTracker<D>::update(const FacetSurface<D>& surface, std::span<co
     Eigen::Map<Place>(v + 2) = place_of(c);
   }
   for (std::size_t& f : first) f *= width;
-  ranks->share(values, first);
+  ranks->gather(values, first);
   for (std::size_t k = 0; k < awake_.size(); ++k) {
     ClosestPoint<D>& c = closest_[awake_[k]];
     const double* v = values.data() + k * width;

@@ -94,7 +94,7 @@ struct VanDerWaals {
  private:
   template <int D>
   TermEnergy apply_to(ParticlesOnSurface<D>& p, const ParticleFields& a, const ParticleFields& b) const {
-    p.update(a.position, b.position, a.ranks);
+    p.update(a.position, b.position, b.ranks);
     const auto closest = p.tracker.closest();
     p.forces.resize(closest.size());
     p.energies.resize(closest.size());

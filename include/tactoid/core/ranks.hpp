@@ -33,7 +33,7 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
   virtual ~Ranks() = default;
 
-  SumOrder sum_order = SumOrder::of_one_process;  ///< of the simulations that are composed from now on; the same on all ranks
+  SumOrder sum_order = SumOrder::of_one_process;  ///< of simulations, as it is when they are composed; the same on all ranks
 
   [[nodiscard]] virtual int rank() const = 0;  ///< of this process, in [0, size())
   [[nodiscard]] virtual int size() const = 0;  ///< number of processes
@@ -43,7 +43,7 @@ class Ranks {
   /// What rank `of` gives, for all. Collective.
   [[nodiscard]] virtual std::string text_of(int of, const std::string& text) = 0;
   /// Numbers of which each rank knows some, for all: those of rank r are values[first[r]] .. values[first[r + 1] − 1]. Collective.
-  virtual void share(std::span<double> values, std::span<const std::size_t> first) = 0;
+  virtual void gather(std::span<double> values, std::span<const std::size_t> first) = 0;
   /// Throws ParameterError on all ranks, with the first rank that differs from rank 0 and what of it, unless all give the same
   /// text. Collective.
   void require_same(std::string_view what, const std::string& text) {

@@ -89,7 +89,7 @@ class DividedBodies final : public Decomposition {
 
   /// Pairs that this rank evaluates in every step, those that another rank evaluates, too, included.
   [[nodiscard]] std::size_t evaluated_pairs() const { return evaluated_pairs_; }
-  /// Numbers that this rank sends to its neighbours in every step.
+  /// Numbers of the motion that this rank sends to its neighbours in every step; forces that go back are not counted.
   [[nodiscard]] std::size_t sent_to_neighbors() const { return neighbors_->sent(); }
 
  private:

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -72,8 +73,12 @@ struct Parcel {
   void unpack(const double* in, Arrival arrival = Arrival::replaces) const {
     for (const Piece& piece : pieces)
       for (const Index i : piece.particles)
-        for (Field* field : piece.fields)
-          for (int k = 0; k < 3; ++k, ++in) (*field)[i][k] = arrival == Arrival::adds ? (*field)[i][k] + *in : *in;
+        for (Field* field : piece.fields) {
+          Eigen::Map<const Vector3> arrived(in);
+          if (arrival == Arrival::adds) (*field)[i].template head<3>() += arrived;
+          else (*field)[i].template head<3>() = arrived;
+          in += 3;
+        }
   }
 };
 
@@ -174,6 +179,12 @@ class ParcelsToNeighbors {
   ~ParcelsToNeighbors() {
     if (request_ != MPI_REQUEST_NULL) MPI_Wait(&request_, MPI_STATUS_IGNORE);
     if (neighbors_ != MPI_COMM_NULL) MPI_Comm_free(&neighbors_);
+  }
+  /// Other fields from now on, as many as before.
+  void carry(std::span<Field* const> fields) {
+    for (auto* parcels : {&out_, &in_})
+      for (Parcel& parcel : *parcels)
+        for (Piece& piece : parcel.pieces) std::copy(fields.begin(), fields.end(), piece.fields.begin());
   }
   /// Sends; the fields are set by end().
   void begin() {

@@ -20,7 +20,7 @@ class PartOfBody final : public BodyShare {
   std::vector<int> point_owner;     ///< per point: the rank of its chunk
   std::vector<char> needed;         ///< per particle: 1 where a row that is evaluated here touches it
 
-  /// `chunk_owner`: a rank per chunk; `touched` as touched_particles gives it. All the same on all ranks; `ranks` must outlive it.
+  /// Collective. `chunk_owner`: a rank per chunk; `touched` as touched_particles gives it. All the same on all ranks; `ranks` must outlive it.
   PartOfBody(MPI_Comm ranks, SumOrder sum_order, const SharedBody& body, const std::vector<int>& chunk_owner, const std::vector<std::vector<Index>>& touched)
       : ranks_(ranks), keep_rows_(body.keep_rows), chunk_values_(ranks, chunk_owner) {
     order = sum_order;
@@ -29,7 +29,6 @@ class PartOfBody final : public BodyShare {
     const PointTable& table = *body.table;
     point_owner.assign(table.points(), 0);
     for (std::size_t c = 0; c < table.chunks.size(); ++c) {
-      own_chunk.push_back(chunk_owner[c] == rank ? 1 : 0);
       for (std::size_t q = table.chunks[c].begin; q < table.chunks[c].end; ++q) point_owner[q] = chunk_owner[c];
     }
     // A particle goes where its first point is; one without a point, where some row touches it.
@@ -80,7 +79,8 @@ class PartOfBody final : public BodyShare {
     table.pairs_elsewhere = pairs - table.size();
   }
   void gather_chunks(std::span<double> values, std::size_t per_chunk) override { chunk_values_.gather(values, per_chunk); }
-  void return_forces() override {
+  void return_forces(std::span<Field* const> fields) override {
+    back_->carry(fields);
     back_->begin();
     back_->end();
   }
@@ -114,9 +114,10 @@ class PartOfBody final : public BodyShare {
       const int particle = particle_owner[body.table->owner[q]];
       if (point_owner[q] == rank && particle != rank) points[static_cast<std::size_t>(particle)].push_back(q);
     }
+    const std::size_t fields = body.motion.size() - 1;  // forces belong to u and v, and a flux to the director
     const auto parcels = [&](const std::vector<std::vector<Index>>& lists) {
       std::vector<Parcel> result;
-      for (const auto& list : lists) result.push_back({{Piece{body.returned, list}}});
+      for (const auto& list : lists) result.push_back({{Piece{std::vector<Field*>(fields, nullptr), list}}});
       return result;
     };
     back_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels(particles), parcels(exchange_lists(ranks_, particles)), Arrival::adds);

@@ -90,7 +90,7 @@ class Session final : public Ranks {
     wait(request);
     return result;
   }
-  void share(std::span<double> values, std::span<const std::size_t> first) override {
+  void gather(std::span<double> values, std::span<const std::size_t> first) override {
     if (size_ == 1) return;
     std::vector<int> counts, places;
     for (std::size_t r = 0; r + 1 < first.size(); ++r) {
@@ -103,6 +103,7 @@ class Session final : public Ranks {
   }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) override {
     require_same("version of Tactoid", version);
+    require_same("order of sums", std::to_string(static_cast<int>(sum_order)));
     return std::make_unique<DividedBodies>(*this, ranks_, std::move(bodies), options_.partitioner);
   }
   [[nodiscard]] bool reports_failure(std::string_view text, int status) override {

@@ -298,8 +298,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       });
     });
     if (share_) meet_other_ranks();
-    find_totals();
-    return found_.totals;
+    return find_totals();
   }
 
   /// Makes the histories of the last add_internal_forces(…, true) those of the body.
@@ -421,7 +420,6 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
 
   /// What the force loop found in the whole body.
   struct Found {
-    BodyTotals totals;
     std::vector<double> stretch = std::vector<double>(sizeof...(Ms), 0.0);  // of each region
     double largest_volume_ratio = 1.0;
     std::size_t failure = no_failure;
@@ -718,48 +716,51 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// Exchanges what the force loop found with the other processes, in the order in which all of them sum.
   void meet_other_ranks() {
     if (share_->order == SumOrder::of_one_process) return gather_chunks();
-    share_->return_forces();
     if constexpr (has_director) {
-      const auto pack = [&](const std::vector<Index>& points, std::vector<double>& values, const auto& copy) {
-        values.resize(10 * points.size());
-        for (std::size_t k = 0; k < points.size(); ++k) {
-          for (int a = 0; a < 9; ++a) copy(point_rate_[points[k]](a % 3, a / 3), values[10 * k + static_cast<std::size_t>(a)]);
-          copy(point_volume_ratio_[points[k]], values[10 * k + 9]);
-        }
-      };
-      std::vector<double> given, taken;
-      pack(share_->given_points, given, [](double of_point, double& value) { value = of_point; });
-      taken.resize(10 * share_->taken_points.size());
+      share_->return_forces(std::array{&force, &director_flux});
+      using Rate = Eigen::Matrix<double, 10, 1>;
+      std::vector<double> given, taken(10 * share_->taken_points.size());
+      for (const Index q : share_->given_points) {
+        given.insert(given.end(), point_rate_[q].data(), point_rate_[q].data() + 9);
+        given.push_back(point_volume_ratio_[q]);
+      }
       share_->exchange_points(given, taken, 10);
-      pack(share_->taken_points, taken, [](double& of_point, double value) { of_point = value; });
+      for (std::size_t k = 0; k < share_->taken_points.size(); ++k) {
+        const Index q = share_->taken_points[k];
+        const Eigen::Map<const Rate> arrived(taken.data() + 10 * k);
+        point_rate_[q] = arrived.head<9>().reshaped(3, 3);
+        point_volume_ratio_[q] = arrived[9];
+      }
+    } else {
+      share_->return_forces(std::array{&force});
     }
   }
 
-  /// Sums up what was found in the chunks.
-  void find_totals() {
-    const bool by_rank = share_ && share_->order == SumOrder::of_ranks;
-    found_ = {};
+  /// Sums up what was found in the chunks, of all processes.
+  BodyTotals find_totals() {
+    std::fill(found_.stretch.begin(), found_.stretch.end(), 0.0);
     found_.largest_volume_ratio = 0.0;
+    found_.failure = no_failure;
+    BodyTotals totals;
     for (std::size_t c = 0; c < chunks_.size(); ++c) {
-      found_.totals += chunks_[c].totals;
+      totals += chunks_[c].totals;
       double& stretch = found_.stretch[table_.chunks[c].region];
       stretch = std::max(stretch, chunks_[c].stretch);
       found_.largest_volume_ratio = std::max(found_.largest_volume_ratio, chunks_[c].largest_volume_ratio);
       found_.failure = std::min(found_.failure, chunks_[c].failure);
     }
-    if (!by_rank) return;
-    BodyTotals& t = found_.totals;
-    std::array<double, 4> sums{t.strain_energy, t.stabilization_energy, t.dissipated_power, t.active_power};
+    if (!share_ || share_->order == SumOrder::of_one_process) return totals;
+    std::array<double, 4> sums{totals.strain_energy, totals.stabilization_energy, totals.dissipated_power, totals.active_power};
     std::vector<double> maxima = found_.stretch;
     maxima.push_back(found_.largest_volume_ratio);
     maxima.push_back(found_.failure == no_failure ? 0.0 : static_cast<double>(table_.points() - found_.failure));  // the first point has the largest
     share_->reduce(sums, maxima);
-    t = {sums[0], sums[1], sums[2], sums[3]};
     found_.failure = maxima.back() == 0.0 ? no_failure : table_.points() - static_cast<std::size_t>(maxima.back());
     maxima.pop_back();
     found_.largest_volume_ratio = maxima.back();
     maxima.pop_back();
     found_.stretch = std::move(maxima);
+    return {sums[0], sums[1], sums[2], sums[3]};
   }
 
   /// Energies, stretches and failures of all chunks from the processes that own them.
@@ -767,7 +768,6 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     constexpr std::size_t width = 7;
     std::vector<double> values(table_.chunks.size() * width, 0.0);
     for (std::size_t c = 0; c < table_.chunks.size(); ++c) {
-      if (!share_->own_chunk[c]) continue;
       const BodyTotals& t = chunks_[c].totals;
       const double failure = chunks_[c].failure == no_failure ? -1.0 : static_cast<double>(chunks_[c].failure);
       const std::array<double, width> own{t.strain_energy,    t.stabilization_energy,          t.dissipated_power, t.active_power,

@@ -26,7 +26,6 @@ class BodyShare {
   virtual ~BodyShare() = default;
 
   SumOrder order = SumOrder::of_one_process;  ///< of what is added up
-  std::vector<char> own_chunk;  ///< per chunk of the table: 1 where it belongs to this rank
   std::vector<char> evaluated;  ///< per point: 1 where this rank evaluates the row
   std::vector<Index> local;     ///< particles that this rank owns, that its rows touch, or that are known to all; ascending
 
@@ -40,8 +39,8 @@ class BodyShare {
   virtual void drop_rows(PointTable& table) const = 0;
   /// Values of chunks, `per_chunk` numbers each: those of own chunks in, those of all chunks out. Collective.
   virtual void gather_chunks(std::span<double> values, std::size_t per_chunk) = 0;
-  /// Adds to what own rows do to own particles what those of other ranks do: SharedBody::returned. Collective.
-  virtual void return_forces() = 0;
+  /// Adds to what own rows do to own particles what those of other ranks do; `fields`: forces, and the director's flux where there is one. Collective.
+  virtual void return_forces(std::span<Field* const> fields) = 0;
   /// Values of given_points, `per_point` numbers each, to where they are taken_points. Collective.
   virtual void exchange_points(std::span<const double> given, std::span<double> taken, std::size_t per_point) = 0;
   /// Sums and maxima over the ranks, of what each gives. Collective.
@@ -57,7 +56,6 @@ struct SharedBody {
   std::vector<char> known_to_all;          ///< per particle: 1 where every rank must know its motion in every step
   bool keep_rows = false;                  ///< no rank drops rows
   std::vector<Field*> motion;              ///< what the evaluation of a row reads of its particles: u, v, h
-  std::vector<Field*> returned;            ///< what rows add to particles: forces, the director's flux
   std::vector<Field*> known;               ///< what every rank must know of particles that are known to all, `motion` included
   std::vector<Field*> whole;               ///< what complete() makes known
 };
@@ -81,7 +79,7 @@ class Decomposition {
   virtual void end_exchange() = 0;
   /// Makes the fields of all particles known to all ranks.
   virtual void complete() = 0;
-  /// Σ_i term_i over the particles of a body, each rank giving those that it owns: in the order of its session.
+  /// Σ_i term_i over the particles of a body, each rank giving those that it owns: in the order in which the body was divided.
   [[nodiscard]] virtual double sum(std::size_t body, std::span<const double> terms) = 0;
   /// The text that the rank gives to which a point of a body belongs, behind the number of that rank.
   [[nodiscard]] virtual std::string told_by_owner(std::size_t body, std::size_t point, const std::string& text) = 0;

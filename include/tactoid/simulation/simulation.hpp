@@ -701,8 +701,6 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     part.keep_rows = synchronous<I> || !body.table().value_based();
     part.motion = {&body.displacement, &body.velocity};
     if constexpr (Body::has_director) part.motion.push_back(&body.director);
-    part.returned = {&body.force};
-    if constexpr (Body::has_director) part.returned.push_back(&body.director_flux);
     part.known = part.motion;
     part.known.push_back(&body.force);  // velocities at the present instant need it
     part.whole = part.known;

@@ -59,7 +59,7 @@ class StableStep {
   /// Largest stable step at the present state; `term_rate` is ω² of what acts on the body's particles, 1/s².
   template <class Body>
   [[nodiscard]] double largest_step(const Body& body, double term_rate) const {
-    const std::vector<double> waves = body.region_wave_numbers();
+    const std::vector<double>& waves = body.region_wave_numbers();
     double step = std::numeric_limits<double>::infinity();
     body.for_each_region([&](const auto& region, Index r) {
       const double k2 = ratio_[r] * waves[r];
