@@ -167,6 +167,12 @@ template <class T>
   return determinant(C);
 }
 
+/// Cauchy stress and volume ratio at a quadrature point.
+struct PointSample {
+  Tensor3 cauchy;  ///< Cauchy stress σ, Pa
+  double J = 1.0;  ///< det F
+};
+
 /// Effective stress, Zeng and Li, Soft Matter 2012, 8, 5765, eqn (18):
 /// σ_e = √½ [(σ₁−σ₂)² + (σ₂−σ₃)² + (σ₃−σ₁)²]^{1/2} of the principal Cauchy stresses, written in components.
 template <class T>

@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <tactoid/simulation/body.hpp>
+#include <tactoid/kinematics/kinematics.hpp>
+#include <tactoid/quadrature/point_table.hpp>
 
 namespace tactoid {
 

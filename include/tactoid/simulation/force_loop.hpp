@@ -43,12 +43,6 @@ struct BodyTotals {
   }
 };
 
-/// Cauchy stress and volume ratio at a quadrature point.
-struct PointSample {
-  Tensor3 cauchy;  ///< Cauchy stress σ, Pa
-  double J = 1.0;  ///< det F
-};
-
 /// What the force loop found in a chunk.
 struct ChunkResult {
   BodyTotals totals;                                               ///< of its points
