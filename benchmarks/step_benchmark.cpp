@@ -108,7 +108,7 @@ void bare_sweep(benchmark::State& state) {
 BENCHMARK(cell_on_substrate<double>)->Name("cell_on_substrate")->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(cell_on_substrate<float>)->Name("cell_on_substrate/single")->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
 void sizes(benchmark::internal::Benchmark* b) {
-  b->ArgNames({"edge", "threads"})->ArgsProduct({{14, 20, 27, 38, 54, 76, 100}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
+  b->ArgNames({"edge", "threads"})->ArgsProduct({{14, 20, 27, 38, 54, 76, 100, 160}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 BENCHMARK(bare_sweep<double>)->Name("bare_sweep")->Apply(sizes);
 BENCHMARK(bare_sweep<float>)->Name("bare_sweep/single")->Apply(sizes);

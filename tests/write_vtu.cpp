@@ -17,6 +17,7 @@
 #include <tactoid/geometry/ball.hpp>
 #include <tactoid/geometry/disc.hpp>
 #include <tactoid/output/all.hpp>
+#include <tactoid/simulation/decomposition.hpp>
 
 using namespace tactoid;
 

@@ -101,7 +101,7 @@ void study_wall(Report& report, Level level) {
     for (std::size_t p = 0; p < body.table().points(); ++p) {
       Vector3 slope = Vector3::Zero();
       for (const TableEntry& entry : body.table().row(p))
-        slope += body.director[entry.particle][0] * Eigen::Map<const Vector3>(entry.gradient);
+        slope += body.director[entry.particle][0] * entry.vector();
       const Vector3 h = body.director[body.table().owner[p]].template head<3>();
       wall.energy += body.table().volume[p] * (0.5 * slope.squaredNorm() + ginzburg_landau_energy(h, core));
     }

@@ -13,13 +13,21 @@
 
 namespace tactoid::mpi {
 
-/// Without MPI: nothing.
+/// Without MPI: without effect.
+struct SessionOptions {
+  double patience = 10.0;  ///< s
+  bool always = false;     ///< without effect
+};
+
+/// Without MPI: this process is the only rank.
 class Session {
  public:
-  Session(int&, char**&) {}  ///< does nothing
+  Session(int&, char**&, const SessionOptions& = {}) {}  ///< does nothing
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  [[nodiscard]] int rank() const { return 0; }  ///< of this process
+  [[nodiscard]] int size() const { return 1; }  ///< number of processes
   SumOrder sum_order = SumOrder::of_one_process;  ///< without effect
 };
 

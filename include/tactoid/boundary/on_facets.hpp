@@ -9,7 +9,7 @@ namespace tactoid {
 /// A surface term (pressure, surface tension, a rigid plate) on a part of the surface: on the facets all of whose
 /// particles satisfy a predicate of the reference position (m). A BoundaryTerm.
 ///
-///   OnFacets{Pressure{.pressure = 1_kPa}, [](const auto& X) { return X[2] > 0.999e-6; }}
+///   OnFacets{AmbientPressure{.pressure = 1_kPa}, [](const auto& X) { return X[2] > 0.999e-6; }}
 ///
 /// The cut planes of a body that is computed in part, by symmetry, are no surface: leave them out.
 template <class Term, class Predicate>

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
+#include <cstring>
 #include <iterator>
 #include <span>
 #include <type_traits>
@@ -12,12 +14,52 @@
 
 namespace tactoid {
 
-/// One pair of a quadrature point q and a particle I: 32 bytes, read in one piece by the hot loop.
-struct alignas(32) TableEntry {
-  double gradient[3] = {0.0, 0.0, 0.0};  ///< ∇₀φ_I(X_q), or the value-based operator G_qI; 1/m. In a meridian section the
-                                         ///< third one is φ_I(X_q)/R_q, which gives the parts around the axis
-  Index particle = 0;                    ///< I
+/// Three doubles that lie where any Index may lie: what an array of double would align to eight bytes.
+class PackedVector {
+ public:
+  /// A component of a vector that may be changed.
+  class Component {
+   public:
+    explicit Component(void* place) : place_(place) {}  ///< refers to a double there
+    Component(const Component&) = default;              ///< refers to the same
+    operator double() const { return read(place_); }    ///< its value
+    ///@{
+    /// Sets it.
+    const Component& operator=(double x) const { return std::memcpy(place_, &x, sizeof x), *this; }
+    const Component& operator=(const Component& other) const { return *this = double(other); }
+    ///@}
+    const Component& operator+=(double x) const { return *this = *this + x; }  ///< adds to it
+
+   private:
+    void* place_;
+  };
+  PackedVector() = default;  ///< 0
+  /// Of three components.
+  PackedVector(double x, double y, double z) { (*this)[0] = x, (*this)[1] = y, (*this)[2] = z; }
+  ///@{
+  /// Component k.
+  [[nodiscard]] double operator[](std::integral auto k) const { return read(words_ + 2 * static_cast<std::size_t>(k)); }
+  [[nodiscard]] Component operator[](std::integral auto k) { return Component(words_ + 2 * static_cast<std::size_t>(k)); }
+  ///@}
+
+ private:
+  static double read(const void* place) {
+    double x;
+    std::memcpy(&x, place, sizeof x);
+    return x;
+  }
+  Index words_[6] = {};
 };
+
+/// One pair of a quadrature point q and a particle I: 28 bytes, read in one piece by the hot loop.
+struct TableEntry {
+  PackedVector gradient;  ///< ∇₀φ_I(X_q), or the value-based operator G_qI; 1/m. In a meridian section the third component is
+                          ///< φ_I(X_q)/R_q, which gives the parts around the axis
+  Index particle = 0;     ///< I
+  /// ∇₀φ_I(X_q) as a vector.
+  [[nodiscard]] Vector3 vector() const { return {gradient[0], gradient[1], gradient[2]}; }
+};
+static_assert(sizeof(TableEntry) == 28);
 
 /// The same in half the bytes, for bodies that store gradients in single precision (quadrature/stored.hpp).
 struct alignas(16) SingleTableEntry {

@@ -11,13 +11,13 @@ TACTOID_INLINE void PointTable::use_single_precision() {
   std::vector<SingleTableEntry> rounded;
   rounded.reserve(entries.size() + points());
   std::vector<double> values;
-  const auto add = [&](const double (&gradient)[3], Index particle, double value) {
+  const auto add = [&](const PackedVector& gradient, Index particle, double value) {
     rounded.push_back({{float(gradient[0]), float(gradient[1]), float(gradient[2])}, particle});
     if (!value_based()) values.push_back(value);
     return TableEntry(rounded.back());
   };
   for (std::size_t q = 0; q < points(); ++q) {
-    double lost[3] = {};
+    PackedVector lost;
     for (std::size_t e = offsets[q]; e < offsets[q + 1]; ++e) {
       const TableEntry& exact = entries[e];
       if (e > offsets[q] && e + 1 == offsets[q + 1] && exact.particle == entries[offsets[q]].particle && exact.gradient[0] == 0.0 && exact.gradient[1] == 0.0 && exact.gradient[2] == 0.0) break;  // padding

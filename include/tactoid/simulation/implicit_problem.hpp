@@ -239,7 +239,7 @@ class SimulationProblem {
         const Tensor3 F = Tensor3::Identity() + rows::gradient_at(table, q, displacement);
         const Tensor3 flux = table.volume[q] * F.determinant() * (F.transpose() * F).inverse();
         detail::for_each_block<1>(L, row, [&](std::size_t a, std::size_t c, int at) {
-          const Eigen::Map<const Vector3> Ga(row[a].gradient), Gc(row[c].gradient);
+          const Vector3 Ga = row[a].vector(), Gc = row[c].vector();
           const Eigen::Index place = L.outerIndexPtr()[row[c].particle] + at;
           L.valuePtr()[place] += Ga.dot(flux * Gc);
           if (table.axisymmetric) along_axis.valuePtr()[place] += Ga.head<2>().dot(flux.topLeftCorner<2, 2>() * Gc.head<2>());

@@ -47,7 +47,7 @@ struct TwoGradients {
 
 /// sum ← sum + f ⊗ gradient, of one quantity or of two, with three numbers in memory.
 template <class Sum, class F>
-[[gnu::always_inline]] inline void add_outer(Sum& sum, const F& f, const double* gradient) {
+[[gnu::always_inline]] inline void add_outer(Sum& sum, const F& f, const PackedVector& gradient) {
   sum.column[0] += gradient[0] * f;
   sum.column[1] += gradient[1] * f;
   sum.column[2] += gradient[2] * f;
@@ -180,7 +180,7 @@ inline void to_points(const Tensor<double>& A, const double (&volume)[1], Gradie
 
 /// f = Σ_K flux_K G_K: what the stress columns V_q P_·K do to the particle of a pair; of one flux or of two.
 template <class Flux, class F>
-[[gnu::always_inline]] inline void contract(const Flux& flux, const double* gradient, F& f) {
+[[gnu::always_inline]] inline void contract(const Flux& flux, const PackedVector& gradient, F& f) {
   f = gradient[0] * flux.column[0] + gradient[1] * flux.column[1] + gradient[2] * flux.column[2];
 }
 /// The same in single precision, of two.

@@ -49,9 +49,9 @@ TACTOID_INLINE double StableStep::largest_wave_number(const PointTable& table, c
       if (chunk.region != r) return;
       for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
         Vector3 gradient = Vector3::Zero();
-        for (const TableEntry& entry : table.row(q)) gradient += mode[entry.particle] * Eigen::Map<const Vector3>(entry.gradient);
+        for (const TableEntry& entry : table.row(q)) gradient += mode[entry.particle] * entry.vector();
         gradient *= point_masses[q];
-        for (const TableEntry& entry : table.row(q)) result[entry.particle] += gradient.dot(Eigen::Map<const Vector3>(entry.gradient));
+        for (const TableEntry& entry : table.row(q)) result[entry.particle] += gradient.dot(entry.vector());
       }
     });
   });

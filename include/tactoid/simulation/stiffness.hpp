@@ -33,7 +33,7 @@ template <int D>
 
 /// The gradient of a pair with respect to the configuration before the one of the table; the third one of a meridian section, φ/R, stays apart.
 [[nodiscard]] inline Vector3 referred(const PointTable& table, const TableEntry& entry, const Tensor3& earlier) {
-  const Eigen::Map<const Vector3> G(entry.gradient);
+  const Vector3 G = entry.vector();
   if (!table.axisymmetric) return earlier.transpose() * G;
   Vector3 g = Vector3::Zero();
   g.head<2>() = earlier.topLeftCorner<2, 2>().transpose() * G.head<2>();
