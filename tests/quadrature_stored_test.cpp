@@ -64,7 +64,7 @@ TEST_CASE("rows in single precision: gradients to 6e-8, sums of a row to 1e-14, 
   CHECK(identity_error < 2e-6);
 }
 
-TEST_CASE("forces in single precision: those of double to 1e-6, no net force, half the memory") {
+TEST_CASE("forces in single precision: those of double to 1e-6, no net force, 16 bytes in the place of 28") {
   auto exact = block<double>();
   auto single = block<float>();
   const BodyTotals e = exact.add_internal_forces(0.0, false), s = single.add_internal_forces(0.0, false);
@@ -77,7 +77,10 @@ TEST_CASE("forces in single precision: those of double to 1e-6, no net force, ha
   CHECK(difference < 1e-6 * size);
   CHECK(difference > 1e-12 * size);
   CHECK(net.norm() < 1e-13 * size);
-  CHECK(static_cast<double>(single.memory()) < 0.7 * static_cast<double>(exact.memory()));
+  // A row keeps its sum in the place of its padding, or in two pairs more.
+  const std::size_t saved = exact.memory() - single.memory(), rows = exact.table().points();
+  CHECK(saved < 12 * exact.table().size());
+  CHECK(saved >= 12 * exact.table().size() - 32 * rows);
 }
 
 TEST_CASE("a run in single precision: momentum to round-off, energy and motion as in double, the same bits after a restart and on any number of threads") {

@@ -61,7 +61,7 @@ struct TableEntry {
 };
 static_assert(sizeof(TableEntry) == 28);
 
-/// The same in half the bytes, for bodies that store gradients in single precision (quadrature/stored.hpp).
+/// The same in 16 bytes, for bodies that store gradients in single precision (quadrature/stored.hpp).
 struct alignas(16) SingleTableEntry {
   float gradient[3] = {0.0F, 0.0F, 0.0F};  ///< 1/m, as in TableEntry
   Index particle = 0;                      ///< I

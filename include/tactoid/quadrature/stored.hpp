@@ -8,7 +8,7 @@
 namespace tactoid {
 
 /// A Quadrature like Q whose bodies store their gradients as Real, double or float: `stored_as<float>(NodalCentroids{})`.
-/// In single precision the gradients take half the memory and the bandwidth, which is what large bodies wait for; everything is still
+/// In single precision the gradients take four sevenths of the memory and the bandwidth, which is what large bodies wait for; everything is still
 /// computed in double precision. Gradients are rounded once, when the body is composed, by 6e-8 of their size: deformation gradients
 /// are off by 1e-7, while linear momentum is kept to round-off. For explicit steps: statics and implicit steps need double.
 template <class Real, class Q>
