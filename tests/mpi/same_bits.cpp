@@ -52,18 +52,23 @@ std::vector<int> scattered(const mpi::ChunkGraph& graph, int ranks) {
   return owner;
 }
 
+/// What `compute(simulation)` returns in one process, on rank 0; nothing on the others.
+template <class Compose, class Compute>
+SavedState computed_alone(const Compose& compose, const Compute& compute) {
+  if (session->rank() != 0) return {};
+  Ranks::current = nullptr;
+  auto simulation = compose();
+  CHECK(simulation.decomposition() == nullptr);
+  SavedState alone = compute(simulation);
+  Ranks::current = session;
+  return alone;
+}
+
 /// Runs `compute(simulation)`, on what `compose()` gives, divided; and on rank 0 alone. What it returns must be the same, to the bit.
 template <class Compose, class Compute>
 void compare(const Compose& compose, const Compute& compute, const mpi::Partitioner& by = mpi::partition_by_metis) {
   partitioner = by;
-  SavedState alone;
-  if (session->rank() == 0) {
-    Ranks::current = nullptr;
-    auto simulation = compose();
-    CHECK(simulation.decomposition() == nullptr);
-    alone = compute(simulation);
-    Ranks::current = session;
-  }
+  const SavedState alone = computed_alone(compose, compute);
   auto simulation = compose();
   CHECK((simulation.decomposition() != nullptr) == (session->size() > 1));
   const SavedState divided = compute(simulation);
@@ -93,13 +98,7 @@ double difference(const StateArray& a, const StateArray& b) {
 template <class Compose, class Compute>
 void compare_by_rank(const Compose& compose, const Compute& compute, double tolerance, const mpi::Partitioner& by = mpi::partition_by_metis) {
   partitioner = by;
-  SavedState alone;
-  if (session->rank() == 0) {
-    Ranks::current = nullptr;
-    auto simulation = compose();
-    alone = compute(simulation);
-    Ranks::current = session;
-  }
+  const SavedState alone = computed_alone(compose, compute);
   session->sum_order = SumOrder::of_ranks;
   SavedState divided[2];
   for (SavedState& state : divided) {

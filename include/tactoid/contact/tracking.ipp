@@ -36,9 +36,9 @@ void ClosestPointTracker<D>::search(const FacetSurface<D>& surface, std::span<co
   queries_then_.assign(queries.begin(), queries.end());
   nodes_then_.resize(surface.nodes.size());
   for (std::size_t k = 0; k < surface.nodes.size(); ++k) nodes_then_[k] = x[surface.nodes[k]];
-  find_awake();
   if (!std::isfinite(sum)) {  // a motion that broke down: the gaps say so
     for (auto& c : closest_) c.gap = std::numeric_limits<double>::quiet_NaN();
+    find_awake();
     return;
   }
   const NeighborSearch<D> tree{middle};

@@ -28,9 +28,8 @@ class PartOfBody final : public BodyShare {
     MPI_Comm_rank(ranks, &rank);
     const PointTable& table = *body.table;
     point_owner.assign(table.points(), 0);
-    for (std::size_t c = 0; c < table.chunks.size(); ++c) {
+    for (std::size_t c = 0; c < table.chunks.size(); ++c)
       for (std::size_t q = table.chunks[c].begin; q < table.chunks[c].end; ++q) point_owner[q] = chunk_owner[c];
-    }
     // A particle goes where its first point is; one without a point, where some row touches it.
     particle_owner.assign(table.particles, -1);
     for (std::size_t q = 0; q < table.points(); ++q) {
