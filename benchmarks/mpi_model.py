@@ -11,7 +11,7 @@ import math
 
 ROW = 57  # pairs of a row at the support 2.35: particles within two layers and a bit
 REACH = 2.02  # layers of particles that a row reaches beyond its point: from the measured halo of the block of 54³
-CHUNK = 512  # points
+CHUNK = 2048  # points of large bodies
 UNPACK = 30e-9  # s per chunk of the whole body, on every rank
 
 

@@ -49,8 +49,7 @@ struct Inversion {
 /// cof F, J and F⁻¹ together.
 template <class T>
 [[nodiscard]] inline Inversion<T> invert(const Tensor<T>& F) {
-  Inversion<T> r;
-  r.cofactors = cofactor(F);
+  Inversion<T> r{.cofactors = cofactor(F), .determinant = {}, .inverse = {}};  // in place: lanes are large to copy
   r.determinant = determinant(F, r.cofactors);
   const T reciprocal = T(1.0) / r.determinant;
   r.inverse = r.cofactors.transpose() * reciprocal;

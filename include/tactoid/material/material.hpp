@@ -149,11 +149,9 @@ template <class M, class T>
   if constexpr (detail::HasResponse<M>) {
     return material.response(point, history);
   } else {
-    Response<T> r;
-    r.energy = material.energy(point.deformation_gradient);
-    if constexpr (detail::HasStress<M>) r.stress = material.first_piola(point.deformation_gradient);
-    else r.stress = stress_of_energy(material, point.deformation_gradient);
-    return r;
+    const Tensor<T>& F = point.deformation_gradient;
+    if constexpr (detail::HasStress<M>) return {.stress = material.first_piola(F), .energy = material.energy(F)};
+    else return {.stress = stress_of_energy(material, F), .energy = material.energy(F)};
   }
 }
 

@@ -6,7 +6,7 @@
 namespace tactoid {
 
 TACTOID_INLINE void color_chunks(PointTable& table, std::size_t points_per_chunk) {
-  if (points_per_chunk == 0) points_per_chunk = std::clamp<std::size_t>(table.points() / 64, 64, 512);
+  if (points_per_chunk == 0) points_per_chunk = std::clamp<std::size_t>(table.points() / 64, 64, 2048);
   points_per_chunk = std::max<std::size_t>(8, points_per_chunk / 8 * 8);  // whole blocks of lanes
 
   std::vector<PointChunk> chunks;

@@ -108,6 +108,14 @@ struct ForceLoop {
     }
   }
 
+  /// Asks for the positions that the stabilisation of a block needs, which no other sweep reads: one sweep before it waits for them.
+  void prefetch_positions(std::size_t begin, std::size_t end) const {
+    for (std::size_t q = begin; q < end; ++q) {
+      const auto row = table.template stored_row<Entry>(q).first(table.bonds(q).size());
+      for (const Entry& entry : row) rows::prefetch(&table.particle_position[entry.particle], 1);
+    }
+  }
+
   /// What the laws are told about a block. Lanes beyond its last point are at rest.
   template <bool Rate, class T, int W>
   [[nodiscard]] PointState<T> block_state(std::size_t begin, std::size_t end, const BlockGradients<W>& g) const {
@@ -175,6 +183,7 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
   for (std::size_t first = chunk.begin; first < chunk.end; first += W) {
     const std::size_t last = std::min(chunk.end, first + W);
     if (is_elsewhere(first, last)) continue;
+    if (kappa > 0.0) prefetch_positions(first, last);
     BlockGradients<W> gradients;
     gather_block<Rate>(first, last, gradients);
     PointState<T> state = block_state<Rate, T>(first, last, gradients);
