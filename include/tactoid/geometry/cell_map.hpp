@@ -51,19 +51,36 @@ template <int D>
   return x;
 }
 
-/// Jacobian matrix ∂X_i/∂ξ_k of the multilinear map, m.
+/// Slopes ∂N_a/∂ξ_k of the multilinear shape functions of the corners: the same in all cells.
+template <int D>
+using CornerSlopes = std::array<Point<D>, (1u << D)>;
+
+/// Slopes of all corners at `xi`.
+template <int D>
+[[nodiscard]] CornerSlopes<D> corner_slopes(const Point<D>& xi) {
+  CornerSlopes<D> slopes;
+  for (std::size_t a = 0; a < slopes.size(); ++a)
+    for (int k = 0; k < D; ++k) {
+      slopes[a][k] = ((a >> k) & 1u) != 0 ? 1.0 : -1.0;
+      for (int l = 0; l < D; ++l)
+        if (l != k) slopes[a][k] *= ((a >> l) & 1u) != 0 ? xi[l] : 1.0 - xi[l];
+    }
+  return slopes;
+}
+
+/// Jacobian matrix ∂X_i/∂ξ_k of the multilinear map, m, where the slopes are known.
+template <int D>
+[[nodiscard]] Eigen::Matrix<double, D, D> cell_jacobian(const Corners<D>& corners, const CornerSlopes<D>& slopes) {
+  Eigen::Matrix<double, D, D> jacobian = Eigen::Matrix<double, D, D>::Zero();
+  for (std::size_t a = 0; a < corners.size(); ++a)
+    for (int k = 0; k < D; ++k) jacobian.col(k) += slopes[a][k] * corners[a];
+  return jacobian;
+}
+
+/// The same at `xi`.
 template <int D>
 [[nodiscard]] Eigen::Matrix<double, D, D> cell_jacobian(const Corners<D>& corners, const Point<D>& xi) {
-  Eigen::Matrix<double, D, D> jacobian = Eigen::Matrix<double, D, D>::Zero();
-  for (std::size_t a = 0; a < corners.size(); ++a) {
-    for (int k = 0; k < D; ++k) {
-      double slope = ((a >> k) & 1u) != 0 ? 1.0 : -1.0;
-      for (int l = 0; l < D; ++l)
-        if (l != k) slope *= ((a >> l) & 1u) != 0 ? xi[l] : 1.0 - xi[l];
-      jacobian.col(k) += slope * corners[a];
-    }
-  }
-  return jacobian;
+  return cell_jacobian<D>(corners, corner_slopes<D>(xi));
 }
 
 /// Gauss–Legendre points and weights on [0, 1]; exact for polynomials of degree 2 N − 1.

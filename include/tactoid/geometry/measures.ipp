@@ -8,6 +8,21 @@ namespace tactoid {
 template <int D>
 std::vector<NodalCell<D>> nodal_cells(const PointCloud<D>& cloud) {
   constexpr std::size_t corners_per_cell = 1u << D;
+  // det of degree 2 and X det of degree 3 in each variable: two Gauss points per direction of a corner's part are exact.
+  struct Sample {
+    double weight;
+    std::array<double, corners_per_cell> functions;  // of the corners
+    CornerSlopes<D> slopes;
+  };
+  std::array<std::vector<Sample>, corners_per_cell> samples;
+  for (std::size_t a = 0; a < corners_per_cell; ++a) {
+    Point<D> lower;
+    for (int k = 0; k < D; ++k) lower[k] = ((a >> k) & 1u) != 0 ? 0.5 : 0.0;
+    for_each_gauss_point<2, D>(lower, 0.5, [&](const Point<D>& xi, double weight) {
+      Sample& sample = samples[a].emplace_back(Sample{weight, {}, corner_slopes<D>(xi)});
+      for (std::size_t b = 0; b < corners_per_cell; ++b) sample.functions[b] = corner_function<D>(b, xi);
+    });
+  }
   std::vector<NodalCell<D>> parts(cloud.cells.size() * corners_per_cell);  // centroid: first moment around the particle
   parallel_for(cloud.cells.size(), [&](std::size_t c) {
     const Corners<D> corners = cell_corners(cloud, cloud.cells[c]);
@@ -15,22 +30,24 @@ std::vector<NodalCell<D>> nodal_cells(const PointCloud<D>& cloud) {
       NodalCell<D>& part = parts[c * corners_per_cell + a];
       part.particle = cloud.cells[c][a];
       part.region = cloud.cell_regions[c];
-      Point<D> lower;
-      for (int k = 0; k < D; ++k) lower[k] = ((a >> k) & 1u) != 0 ? 0.5 : 0.0;
-      // det of degree 2 and X det of degree 3 in each variable: two points per direction are exact.
-      for_each_gauss_point<2, D>(lower, 0.5, [&](const Point<D>& xi, double weight) {
-        const double dv = weight * cell_jacobian<D>(corners, xi).determinant();
+      for (const Sample& sample : samples[a]) {
+        const double dv = sample.weight * cell_jacobian<D>(corners, sample.slopes).determinant();
+        Point<D> X = Point<D>::Zero();
+        for (std::size_t b = 0; b < corners_per_cell; ++b) X += sample.functions[b] * corners[b];
         part.volume += dv;
-        part.centroid += dv * (cell_position<D>(corners, xi) - corners[a]);
-      });
+        part.centroid += dv * (X - corners[a]);
+      }
     }
   });
-  std::vector<std::size_t> order(parts.size());  // by particle, region and cell: sums in a fixed order
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (parts[a].particle != parts[b].particle) return parts[a].particle < parts[b].particle;
-    if (parts[a].region != parts[b].region) return parts[a].region < parts[b].region;
-    return a < b;
+  // By particle, region and cell: sums in a fixed order.
+  std::vector<std::size_t> first(cloud.size() + 1, 0), order(parts.size());
+  for (const NodalCell<D>& part : parts) ++first[part.particle + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (std::size_t p = 0; p < parts.size(); ++p) order[next[parts[p].particle]++] = p;
+  parallel_for(cloud.size(), [&](std::size_t i) {
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first[i]), end = order.begin() + static_cast<std::ptrdiff_t>(first[i + 1]);
+    std::sort(begin, end, [&](std::size_t a, std::size_t b) { return std::pair(parts[a].region, a) < std::pair(parts[b].region, b); });
   });
   std::vector<NodalCell<D>> nodal;
   nodal.reserve(cloud.size());

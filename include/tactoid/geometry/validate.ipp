@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+
 #include <tactoid/core/compiled.hpp>
+#include <tactoid/core/parallel.hpp>
 #include <tactoid/geometry/validate.hpp>
 
 namespace tactoid {
@@ -54,16 +57,28 @@ void validate(const PointCloud<D>& cloud) {
         if (cell[a] == cell[b]) throw GeometryError(fmt::format("Cell {} uses particle {} twice.", c, cell[a]));
       used[cell[a]] = true;
     }
-    const Corners<D> corners = cell_corners(cloud, cell);
-    for (std::size_t a = 0; a < cell.size(); ++a) {
-      Point<D> xi;
-      for (int k = 0; k < D; ++k) xi[k] = ((a >> k) & 1u) != 0 ? 1.0 : 0.0;
-      const double jacobian = cell_jacobian<D>(corners, xi).determinant();
-      if (!(jacobian > 0.0))
-        throw GeometryError(fmt::format(
-            "Cell {} has the Jacobian {:g} at particle {}, {}: it must be positive (inverted or degenerate cell, or "
-            "vertices that are not in tensor order).", c, jacobian, cell[a], describe<D>(corners[a])));
-    }
+  }
+  std::array<CornerSlopes<D>, (1u << D)> slopes;  // at the corners
+  for (std::size_t a = 0; a < slopes.size(); ++a) {
+    Point<D> xi;
+    for (int k = 0; k < D; ++k) xi[k] = ((a >> k) & 1u) != 0 ? 1.0 : 0.0;
+    slopes[a] = corner_slopes<D>(xi);
+  }
+  const auto jacobian_at = [&](std::size_t c, std::size_t a) {
+    return cell_jacobian<D>(cell_corners(cloud, cloud.cells[c]), slopes[a]).determinant();
+  };
+  std::vector<char> inverted(cloud.cells.size(), 0);
+  parallel_for(cloud.cells.size(), [&](std::size_t c) {
+    for (std::size_t a = 0; a < slopes.size(); ++a)
+      if (!(jacobian_at(c, a) > 0.0)) inverted[c] = 1;
+  });
+  if (const auto c = static_cast<std::size_t>(std::find(inverted.begin(), inverted.end(), 1) - inverted.begin()); c < inverted.size()) {
+    std::size_t a = 0;
+    while (jacobian_at(c, a) > 0.0) ++a;
+    const Index particle = cloud.cells[c][a];
+    throw GeometryError(fmt::format(
+        "Cell {} has the Jacobian {:g} at particle {}, {}: it must be positive (inverted or degenerate cell, or "
+        "vertices that are not in tensor order).", c, jacobian_at(c, a), particle, describe<D>(cell_corners(cloud, cloud.cells[c])[a])));
   }
   for (std::size_t f = 0; f < cloud.facets.size(); ++f)
     for (const Index i : cloud.facets[f])

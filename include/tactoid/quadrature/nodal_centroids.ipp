@@ -69,26 +69,36 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
 
 template <int D>
 void NodalCentroids::weigh_stabilization(PointTable& table, const PointCloud<D>& cloud, const std::vector<double>& spacing) const {
+  const auto length = [&](std::size_t q, std::size_t e) {
+    return cloud.difference(cloud.positions[table.owner[q]], cloud.positions[table.entries[e].particle]).norm();
+  };
+  const auto is_bond = [&](std::size_t q, std::size_t e, double distance) {
+    const Index particle = table.entries[e].particle;
+    return particle != table.owner[q] && distance / (stabilization_reach * spacing[particle]) < 1.0;
+  };
+  table.bond_offsets.assign(table.points() + 1, 0);
+  parallel_for(table.points(), [&](std::size_t q) {
+    std::size_t bonds = 0;
+    for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) bonds += is_bond(q, e, length(q, e)) ? 1 : 0;
+    table.bond_offsets[q + 1] = (bonds + 1) / 2 * 2;
+  });
+  std::partial_sum(table.bond_offsets.begin(), table.bond_offsets.end(), table.bond_offsets.begin());
+  table.bond_weights.assign(table.bond_offsets.back(), 0.0F);
   table.stabilization_scale.assign(table.points(), 0.0);
-  table.bond_offsets.assign(1, 0);
-  std::vector<std::pair<TableEntry, double>> bonded, others;  // with their shares of the mass
-  for (std::size_t q = 0; q < table.points(); ++q) {
-    const Index owner = table.owner[q];
+  parallel_for(table.points(), [&](std::size_t q) {
+    std::vector<std::pair<TableEntry, double>> bonded, others;  // with their shares of the mass
     std::size_t e = table.offsets[q];
     double moment = 0.0;
-    bonded.clear(), others.clear();
     for (; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) {
-      const Index particle = table.entries[e].particle;
-      const double distance = cloud.difference(cloud.positions[owner], cloud.positions[particle]).norm();
-      const double x = distance / (stabilization_reach * spacing[particle]);
-      const bool bond = particle != owner && x < 1.0;
+      const double distance = length(q, e);
+      const bool bond = is_bond(q, e, distance);
       (bond ? bonded : others).emplace_back(table.entries[e], table.mass_shares[e]);
       if (!bond) continue;
-      table.bond_weights.push_back(static_cast<float>(1.0 - x * x));
-      moment += static_cast<double>(table.bond_weights.back()) * distance * distance;
+      const double x = distance / (stabilization_reach * spacing[table.entries[e].particle]);
+      float& weight = table.bond_weights[table.bond_offsets[q] + bonded.size() - 1];
+      weight = static_cast<float>(1.0 - x * x);
+      moment += static_cast<double>(weight) * distance * distance;
     }
-    if (bonded.size() % 2 == 1) table.bond_weights.push_back(0.0F);
-    table.bond_offsets.push_back(table.bond_weights.size());
     const bool padded = e < table.offsets[q + 1];
     e = table.offsets[q];
     for (const auto* part : {&bonded, &others})
@@ -98,7 +108,7 @@ void NodalCentroids::weigh_stabilization(PointTable& table, const PointCloud<D>&
       }
     if (padded) table.entries[e].particle = table.entries[table.offsets[q]].particle;
     table.stabilization_scale[q] = moment > 0.0 ? table.volume[q] * D / moment : 0.0;
-  }
+  });
 }
 
 }  // namespace tactoid
