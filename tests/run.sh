@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source cmake/install_packages.sh
 
-install_packages "${build_packages[@]}" "${optional_packages[@]}" doctest-dev doxygen python3 python3-numpy python3-matplotlib python3-h5py
+install_packages "${build_packages[@]}" "${optional_packages[@]}" doctest-dev libbenchmark-dev doxygen python3 python3-numpy python3-matplotlib python3-h5py
 preset=${PRESET:-test}
 configure_and_build "$preset"
 exec ctest --preset "$preset" --parallel "$(nproc 2>/dev/null || echo 2)" "$@" </dev/null
