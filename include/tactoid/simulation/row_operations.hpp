@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
 #include <span>
 #include <type_traits>
 
@@ -25,10 +24,10 @@ struct alignas(64) Motion {
 /// What the force loop knows of a particle's motion: u and v, or u alone where no rate is needed.
 template <bool Rate>
 using MotionOf = std::conditional_t<Rate, Motion, Vector4>;
-/// u of either.
-[[nodiscard]] inline const double* displacement(const Motion& motion) { return motion.displacement; }
-/// u of either.
-[[nodiscard]] inline const double* displacement(const Vector4& u) { return u.data(); }
+/// u and v of a particle as one vector.
+[[nodiscard, gnu::always_inline]] inline Octet in_vector(const Motion& motion) { return octet(motion.displacement); }
+/// u alone.
+[[nodiscard, gnu::always_inline]] inline Quad in_vector(const Vector4& u) { return quad(u.data()); }
 
 /// Columns of a referential gradient: column[K] = ∂f/∂X_K.
 struct Gradient {
@@ -260,78 +259,55 @@ struct StabilizedPoint {
   double tau;                      ///< τ, s
 };
 
-/// Where two particles are in the reference configuration; in periodic directions, as seen from `origin`: the difference of nearest images.
-template <bool Periodic>
-[[gnu::always_inline]] inline void place(const Vector4& first, const Vector4& second, const Vector4& origin, const Vector3& period, Octet& x) {
-  if constexpr (!Periodic) {
-    x = join(quad(first.data()), quad(second.data()));
-  } else {
-    alignas(64) double difference[8] = {};
-    for (int K = 0; K < 3; ++K) {
-      difference[K] = first[K] - origin[K];
-      difference[4 + K] = second[K] - origin[K];
-      if (period[K] > 0.0)
-        for (double* d : {&difference[K], &difference[4 + K]}) *d -= period[K] * std::round(*d / period[K]);
-    }
-    x = octet(difference);
-  }
-}
-
-/// How far two particles are from where they were if their field was linear around the owner: f − origin − (∂f/∂X) X.
-[[gnu::always_inline]] inline void deviate(const double* first, const double* second, const Octet& origin, const TwoGradients& df, const Octet& x, Octet& r) {
-  r = join(quad(first), quad(second)) - origin - spread<0>(x) * df.column[0] - spread<1>(x) * df.column[1] - spread<2>(x) * df.column[2];
-}
-
 /// The stabilising energy of a point q with the owner I (NodalCentroids), its exact variation and its damping:
 ///   r_J = u_J − u_I − H ΔX_J,  H = F_q − 1,   energy ½ κ Σ_J w_J |r_J|²,   force from κ w_J (r_J + τ ṙ_J).
 /// Writes the force of each of these pairs to `held`, adds the owner's to f, and subtracts from `flux` the part that acts
 /// through F_q. `periodic` directions take the nearest images. Without them r_J = (u_J − H X_J) − (u_I − H X_I), which saves
-/// the differences of positions. Two pairs at once: the weights are even in number.
+/// the differences of positions. r_J and ṙ_J are one vector.
 template <bool Periodic, bool Rate, class Entry>
 StabilizationPower stabilize(const StabilizedPoint<Entry>& point, const Vector3& period, const Vector4* X, const MotionOf<Rate>* motion,
                              const Gradient& du, const Gradient& dv, Quad* held, Vector4* f, Gradient& flux) {
+  using Deviation = std::conditional_t<Rate, Octet, Quad>;
   const Vector4 XI = X[point.owner];
-  const TwoGradients H(du, du), H_rate(dv, dv);
-  Quad u_origin = quad(displacement(motion[point.owner])), v_origin = {};
-  if constexpr (Rate) v_origin = quad(motion[point.owner].velocity);
-  if constexpr (!Periodic)
-    for (int K = 0; K < 3; ++K) {
-      u_origin -= XI[K] * du.column[K];
-      if constexpr (Rate) v_origin -= XI[K] * dv.column[K];
-    }
-  const Octet u_origins = join(u_origin, u_origin), v_origins = join(v_origin, v_origin);
-  const Quad ones = {1.0, 1.0, 1.0, 1.0};
-  Octet sum = {}, energy = {}, dissipated = {};
-  TwoGradients moments;
-  for (std::size_t k = 0; k < point.weights.size(); k += 2) {
-    const Index J = point.row[k].particle, L = point.row[k + 1].particle;
-    const double w_J = point.kappa * static_cast<double>(point.weights[k]), w_L = point.kappa * static_cast<double>(point.weights[k + 1]);
-    const Octet w = join(w_J * ones, w_L * ones);
-    Octet x, r;
-    place<Periodic>(X[J], X[L], XI, period, x);
-    deviate(displacement(motion[J]), displacement(motion[L]), u_origins, H, x, r);
-    Octet force = w * r;
-    energy += force * r;
-    if constexpr (Rate) {
-      Octet rate;
-      deviate(motion[J].velocity, motion[L].velocity, v_origins, H_rate, x, rate);
-      const Octet damping = point.tau * (w * rate);
-      dissipated += damping * rate;
-      force += damping;
-    }
-    held[k] = low(force);
-    held[k + 1] = high(force);
-    sum += force;
-    add_outer(moments, force, x);
-  }
-  const Quad force_sum = low(sum) + high(sum);
-  quad(f[point.owner].data()) += force_sum;
+  Deviation H[3], origin = in_vector(motion[point.owner]);
   for (int K = 0; K < 3; ++K) {
-    flux.column[K] -= low(moments.column[K]) + high(moments.column[K]);
-    if constexpr (!Periodic) flux.column[K] += XI[K] * force_sum;
+    if constexpr (Rate) H[K] = join(du.column[K], dv.column[K]);
+    else H[K] = du.column[K];
+    if constexpr (!Periodic) origin -= XI[K] * H[K];
   }
-  const Quad stored = low(energy) + high(energy), lost = low(dissipated) + high(dissipated);
-  return {0.5 * (stored[0] + stored[1] + stored[2]), lost[0] + lost[1] + lost[2]};
+  Deviation work = {};
+  Quad sum = {};
+  Gradient moments;
+  for (std::size_t k = 0; k < point.weights.size(); ++k) {
+    const Index J = point.row[k].particle;
+    const double weight = point.kappa * static_cast<double>(point.weights[k]);
+    const Vector4* x = &X[J];
+    Vector4 nearest;
+    if constexpr (Periodic) {
+      nearest = X[J] - XI;
+      for (int K = 0; K < 3; ++K)
+        if (period[K] > 0.0) nearest[K] -= period[K] * std::round(nearest[K] / period[K]);
+      x = &nearest;
+    }
+    const Deviation r = in_vector(motion[J]) - origin - (*x)[0] * H[0] - (*x)[1] * H[1] - (*x)[2] * H[2];
+    const Deviation weighted = weight * r;
+    work += weighted * r;
+    Quad force;
+    if constexpr (Rate) force = low(weighted) + point.tau * high(weighted);
+    else force = weighted;
+    held[k] = force;
+    sum += force;
+    for (int K = 0; K < 3; ++K) moments.column[K] += (*x)[K] * force;
+  }
+  quad(f[point.owner].data()) += sum;
+  for (int K = 0; K < 3; ++K) {
+    flux.column[K] -= moments.column[K];
+    if constexpr (!Periodic) flux.column[K] += XI[K] * sum;
+  }
+  Quad stored, lost = {};
+  if constexpr (Rate) stored = low(work), lost = high(work);
+  else stored = work;
+  return {0.5 * (stored[0] + stored[1] + stored[2]), point.tau * (lost[0] + lost[1] + lost[2])};
 }
 
 }  // namespace tactoid::rows
