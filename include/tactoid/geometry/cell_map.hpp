@@ -43,12 +43,30 @@ template <int D>
   return n;
 }
 
-/// Multilinear map of the unit cube onto the cell: X(ξ) = Σ_a N_a(ξ) X_a, m.
+/// Values N_a of the multilinear shape functions of the corners: the same in all cells.
+template <int D>
+using CornerFunctions = std::array<double, (1u << D)>;
+
+/// Values of all corners at `xi`.
+template <int D>
+[[nodiscard]] CornerFunctions<D> corner_functions(const Point<D>& xi) {
+  CornerFunctions<D> functions;
+  for (std::size_t a = 0; a < functions.size(); ++a) functions[a] = corner_function<D>(a, xi);
+  return functions;
+}
+
+/// Multilinear map of the unit cube onto the cell, X(ξ) = Σ_a N_a(ξ) X_a, m, where the values are known.
+template <int D>
+[[nodiscard]] Point<D> cell_position(const Corners<D>& corners, const CornerFunctions<D>& functions) {
+  Point<D> x = Point<D>::Zero();
+  for (std::size_t a = 0; a < corners.size(); ++a) x += functions[a] * corners[a];
+  return x;
+}
+
+/// The same at `xi`.
 template <int D>
 [[nodiscard]] Point<D> cell_position(const Corners<D>& corners, const Point<D>& xi) {
-  Point<D> x = Point<D>::Zero();
-  for (std::size_t a = 0; a < corners.size(); ++a) x += corner_function<D>(a, xi) * corners[a];
-  return x;
+  return cell_position<D>(corners, corner_functions<D>(xi));
 }
 
 /// Slopes ∂N_a/∂ξ_k of the multilinear shape functions of the corners: the same in all cells.

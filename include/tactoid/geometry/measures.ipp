@@ -11,7 +11,7 @@ std::vector<NodalCell<D>> nodal_cells(const PointCloud<D>& cloud) {
   // det of degree 2 and X det of degree 3 in each variable: two Gauss points per direction of a corner's part are exact.
   struct Sample {
     double weight;
-    std::array<double, corners_per_cell> functions;  // of the corners
+    CornerFunctions<D> functions;
     CornerSlopes<D> slopes;
   };
   std::array<std::vector<Sample>, corners_per_cell> samples;
@@ -19,8 +19,7 @@ std::vector<NodalCell<D>> nodal_cells(const PointCloud<D>& cloud) {
     Point<D> lower;
     for (int k = 0; k < D; ++k) lower[k] = ((a >> k) & 1u) != 0 ? 0.5 : 0.0;
     for_each_gauss_point<2, D>(lower, 0.5, [&](const Point<D>& xi, double weight) {
-      Sample& sample = samples[a].emplace_back(Sample{weight, {}, corner_slopes<D>(xi)});
-      for (std::size_t b = 0; b < corners_per_cell; ++b) sample.functions[b] = corner_function<D>(b, xi);
+      samples[a].push_back({weight, corner_functions<D>(xi), corner_slopes<D>(xi)});
     });
   }
   std::vector<NodalCell<D>> parts(cloud.cells.size() * corners_per_cell);  // centroid: first moment around the particle
@@ -32,10 +31,8 @@ std::vector<NodalCell<D>> nodal_cells(const PointCloud<D>& cloud) {
       part.region = cloud.cell_regions[c];
       for (const Sample& sample : samples[a]) {
         const double dv = sample.weight * cell_jacobian<D>(corners, sample.slopes).determinant();
-        Point<D> X = Point<D>::Zero();
-        for (std::size_t b = 0; b < corners_per_cell; ++b) X += sample.functions[b] * corners[b];
         part.volume += dv;
-        part.centroid += dv * (X - corners[a]);
+        part.centroid += dv * (cell_position<D>(corners, sample.functions) - corners[a]);
       }
     }
   });

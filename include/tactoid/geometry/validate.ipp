@@ -64,21 +64,21 @@ void validate(const PointCloud<D>& cloud) {
     for (int k = 0; k < D; ++k) xi[k] = ((a >> k) & 1u) != 0 ? 1.0 : 0.0;
     slopes[a] = corner_slopes<D>(xi);
   }
-  const auto jacobian_at = [&](std::size_t c, std::size_t a) {
-    return cell_jacobian<D>(cell_corners(cloud, cloud.cells[c]), slopes[a]).determinant();
+  const auto first_inverted = [&](const Corners<D>& corners) {
+    std::size_t a = 0;
+    while (a < slopes.size() && cell_jacobian<D>(corners, slopes[a]).determinant() > 0.0) ++a;
+    return a;
   };
   std::vector<char> inverted(cloud.cells.size(), 0);
   parallel_for(cloud.cells.size(), [&](std::size_t c) {
-    for (std::size_t a = 0; a < slopes.size(); ++a)
-      if (!(jacobian_at(c, a) > 0.0)) inverted[c] = 1;
+    inverted[c] = first_inverted(cell_corners(cloud, cloud.cells[c])) < slopes.size() ? 1 : 0;
   });
   if (const auto c = static_cast<std::size_t>(std::find(inverted.begin(), inverted.end(), 1) - inverted.begin()); c < inverted.size()) {
-    std::size_t a = 0;
-    while (jacobian_at(c, a) > 0.0) ++a;
-    const Index particle = cloud.cells[c][a];
+    const Corners<D> corners = cell_corners(cloud, cloud.cells[c]);
+    const std::size_t a = first_inverted(corners);
     throw GeometryError(fmt::format(
         "Cell {} has the Jacobian {:g} at particle {}, {}: it must be positive (inverted or degenerate cell, or "
-        "vertices that are not in tensor order).", c, jacobian_at(c, a), particle, describe<D>(cell_corners(cloud, cloud.cells[c])[a])));
+        "vertices that are not in tensor order).", c, cell_jacobian<D>(corners, slopes[a]).determinant(), cloud.cells[c][a], describe<D>(corners[a])));
   }
   for (std::size_t f = 0; f < cloud.facets.size(); ++f)
     for (const Index i : cloud.facets[f])

@@ -72,14 +72,15 @@ void NodalCentroids::weigh_stabilization(PointTable& table, const PointCloud<D>&
   const auto length = [&](std::size_t q, std::size_t e) {
     return cloud.difference(cloud.positions[table.owner[q]], cloud.positions[table.entries[e].particle]).norm();
   };
-  const auto is_bond = [&](std::size_t q, std::size_t e, double distance) {
+  // Of the bond's reach; 1 for what is none.
+  const auto share_of_reach = [&](std::size_t q, std::size_t e, double distance) {
     const Index particle = table.entries[e].particle;
-    return particle != table.owner[q] && distance / (stabilization_reach * spacing[particle]) < 1.0;
+    return particle == table.owner[q] ? 1.0 : distance / (stabilization_reach * spacing[particle]);
   };
   table.bond_offsets.assign(table.points() + 1, 0);
   parallel_for(table.points(), [&](std::size_t q) {
     std::size_t bonds = 0;
-    for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) bonds += is_bond(q, e, length(q, e)) ? 1 : 0;
+    for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) bonds += share_of_reach(q, e, length(q, e)) < 1.0 ? 1 : 0;
     table.bond_offsets[q + 1] = (bonds + 1) / 2 * 2;
   });
   std::partial_sum(table.bond_offsets.begin(), table.bond_offsets.end(), table.bond_offsets.begin());
@@ -90,11 +91,10 @@ void NodalCentroids::weigh_stabilization(PointTable& table, const PointCloud<D>&
     std::size_t e = table.offsets[q];
     double moment = 0.0;
     for (; e < table.offsets[q + 1] && !is_padding(table, q, e); ++e) {
-      const double distance = length(q, e);
-      const bool bond = is_bond(q, e, distance);
+      const double distance = length(q, e), x = share_of_reach(q, e, distance);
+      const bool bond = x < 1.0;
       (bond ? bonded : others).emplace_back(table.entries[e], table.mass_shares[e]);
       if (!bond) continue;
-      const double x = distance / (stabilization_reach * spacing[table.entries[e].particle]);
       float& weight = table.bond_weights[table.bond_offsets[q] + bonded.size() - 1];
       weight = static_cast<float>(1.0 - x * x);
       moment += static_cast<double>(weight) * distance * distance;

@@ -175,6 +175,7 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
   constexpr std::size_t W = Region::width;
   const double kappa = table.stabilization_scale.empty() ? 0.0 : region.stabilization.modulus;
   const double tau = region.stabilization.damping_time;
+  const bool stabilized = kappa > 0.0;
   thread_local std::vector<Quad> held;  // forces of the pairs of a row, one row after the other, until they are scattered
   held.resize(std::max(held.size(), W * longest_row));
   ChunkResult result;
@@ -183,7 +184,7 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
   for (std::size_t first = chunk.begin; first < chunk.end; first += W) {
     const std::size_t last = std::min(chunk.end, first + W);
     if (is_elsewhere(first, last)) continue;
-    if (kappa > 0.0) prefetch_positions(first, last);
+    if (stabilized) prefetch_positions(first, last);
     BlockGradients<W> gradients;
     gather_block<Rate>(first, last, gradients);
     PointState<T> state = block_state<Rate, T>(first, last, gradients);
@@ -241,7 +242,6 @@ ChunkResult ForceLoop<D, Director, Entry>::pass(Region& region, const PointChunk
         if (table.axisymmetric) rows::turn_back(flux_h[l]);
     }
     // All rows are stabilised before the first is scattered: they do not wait for each other.
-    const bool stabilized = kappa > 0.0;
     for (std::size_t q = first; stabilized && q < last; ++q) {
       const std::size_t l = q - first;
       const rows::StabilizedPoint<Entry> point{table.template stored_row<Entry>(q), table.bonds(q), table.owner[q], kappa * table.stabilization_scale[q], tau};
