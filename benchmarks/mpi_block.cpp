@@ -4,7 +4,7 @@
 //   mpirun -np 1 --bind-to none mpi_block --edge 54 --steps 20 --threads 2
 //
 // Options: particles along an edge, steps, threads of each rank; --sum-order ranks, where each row is evaluated
-// once; and 1 in --scattered for a division that has nothing to do with places.
+// once; --set-up divided, where each rank makes the rows that it needs; and 1 in --scattered for a division that has nothing to do with places.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -37,6 +37,16 @@ long resident_megabytes() {
   return resident * 4096 / 1000000;
 }
 
+/// The most that it has been, MB.
+long peak_megabytes() {
+  std::ifstream file("/proc/self/status");
+  std::string word;
+  long kilobytes = 0;
+  while (file >> word)
+    if (word == "VmHWM:") file >> kilobytes;
+  return kilobytes * 1024 / 1000000;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -56,6 +66,7 @@ int main(int argc, char** argv) {
     if (name == "--steps") steps = std::max(value, 1);
     if (name == "--threads") threads = std::max(value, 1);
     if (name == "--sum-order" && argv[i + 1] == std::string("ranks")) session.sum_order = SumOrder::of_ranks;
+    if (name == "--set-up" && argv[i + 1] == std::string("divided")) session.set_up = SetUp::divided;
     if (name == "--scattered") scattered = value != 0;
   }
   set_thread_count(threads);
@@ -69,6 +80,7 @@ int main(int argc, char** argv) {
   }
   Simulation simulation{Bodies{std::move(block)}, Contacts{}, Boundaries{}, CentralDifference{}};
   const double set_up = seconds() - start;
+  const long peak = session.largest(peak_megabytes());
   const double dt = 0.4 * simulation.largest_stable_time_step();
   const auto step = [&] { simulation.run(simulation.time() + dt); };
   step();
@@ -97,7 +109,7 @@ int main(int argc, char** argv) {
   const long table = session.largest(static_cast<long>(simulation.body<0>().memory() / 1000000));
   if (is_first_rank())
     std::printf("%d ranks x %d threads, %d^3 particles: set-up %.1f s, step %.2f ms (median; least %.2f; processor %.2f), %.3f ns/pair; "
-                "largest part %.4f of the pairs (%.4f of 1/ranks), %ld numbers sent; %ld MB resident, %ld MB body\n",
+                "largest part %.4f of the pairs (%.4f of 1/ranks), %ld numbers sent; %ld MB resident, %ld MB body; %ld MB at most in set-up\n",
                 session.size(), threads, edge, set_up, 1e3 * median, 1e3 * times.front(), 1e-3 * static_cast<double>(busiest), 1e9 * median / pairs,
-                static_cast<double>(evaluated) / pairs, static_cast<double>(evaluated) * session.size() / pairs, sent, resident, table);
+                static_cast<double>(evaluated) / pairs, static_cast<double>(evaluated) * session.size() / pairs, sent, resident, table, peak);
 }

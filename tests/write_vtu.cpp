@@ -95,6 +95,8 @@ struct OneOfTwo final : Ranks {
   [[nodiscard]] long largest(long number) override { return number; }
   [[nodiscard]] std::string text_of(int, const std::string& text) override { return text; }
   void gather(std::span<double>, std::span<const std::size_t>) override {}
+  void gather(std::span<Index>, std::span<const std::size_t>) override {}
+  [[nodiscard]] std::shared_ptr<RowShare> divide(const TableOutline&) override { return nullptr; }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody>) override { return nullptr; }
   [[nodiscard]] bool reports_failure(std::string_view, int) override { return true; }
 

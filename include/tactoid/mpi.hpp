@@ -29,6 +29,7 @@ class Session {
   [[nodiscard]] int rank() const { return 0; }  ///< of this process
   [[nodiscard]] int size() const { return 1; }  ///< number of processes
   SumOrder sum_order = SumOrder::of_one_process;  ///< without effect
+  SetUp set_up = SetUp::whole;                    ///< without effect
 };
 
 }  // namespace tactoid::mpi

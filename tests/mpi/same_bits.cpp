@@ -35,6 +35,7 @@
 #include <tactoid/simulation/implicit_problem.hpp>
 #include <tactoid/simulation/observer.hpp>
 #include <tactoid/simulation/simulation.hpp>
+#include <tactoid/simulation/static_problem.hpp>
 
 using namespace tactoid;
 
@@ -64,14 +65,7 @@ SavedState computed_alone(const Compose& compose, const Compute& compute) {
   return alone;
 }
 
-/// Runs `compute(simulation)`, on what `compose()` gives, divided; and on rank 0 alone. What it returns must be the same, to the bit.
-template <class Compose, class Compute>
-void compare(const Compose& compose, const Compute& compute, const mpi::Partitioner& by = mpi::partition_by_metis) {
-  partitioner = by;
-  const SavedState alone = computed_alone(compose, compute);
-  auto simulation = compose();
-  CHECK((simulation.decomposition() != nullptr) == (session->size() > 1));
-  const SavedState divided = compute(simulation);
+void check_same(const SavedState& alone, const SavedState& divided) {
   if (session->rank() != 0) return;
   REQUIRE(alone.size() == divided.size());
   for (const auto& [name, array] : alone) {
@@ -79,6 +73,31 @@ void compare(const Compose& compose, const Compute& compute, const mpi::Partitio
     INFO("state: ", name);
     REQUIRE(found != divided.end());
     CHECK(array == found->second);
+  }
+}
+
+/// Bodies that are composed while it lives are set up in parts.
+struct DividedSetUp {
+  DividedSetUp() { session->set_up = SetUp::divided; }
+  ~DividedSetUp() { session->set_up = SetUp::whole; }
+};
+
+/// Runs `compute(simulation)`, on what `compose()` gives, divided, set up whole and in parts; and on rank 0 alone. What it returns must be the same, to the bit.
+template <class Compose, class Compute>
+void compare(const Compose& compose, const Compute& compute, const mpi::Partitioner& by = mpi::partition_by_metis) {
+  partitioner = by;
+  const SavedState alone = computed_alone(compose, compute);
+  {
+    auto simulation = compose();
+    CHECK((simulation.decomposition() != nullptr) == (session->size() > 1));
+    check_same(alone, compute(simulation));
+  }
+  const DividedSetUp set_up;
+  if constexpr (decltype(compose())::velocity_lag > 0.0) {
+    auto simulation = compose();
+    check_same(alone, compute(simulation));
+  } else if (session->size() > 1) {
+    CHECK_THROWS_AS((void)compose(), ParameterError);
   }
 }
 
@@ -94,30 +113,41 @@ double difference(const StateArray& a, const StateArray& b) {
   return off / size;
 }
 
-/// The same in the order of the ranks, where each row is evaluated once: what it returns must be the same but for `tolerance`, and to the bit in a second run.
+/// The same in the order of the ranks, where each row is evaluated once: what it returns must be the same but for `tolerance`, and to the bit in a second run. Set up in parts, bodies
+/// are divided each for itself, and numbers are the same but for `tolerance`, too.
 template <class Compose, class Compute>
 void compare_by_rank(const Compose& compose, const Compute& compute, double tolerance, const mpi::Partitioner& by = mpi::partition_by_metis) {
   partitioner = by;
   const SavedState alone = computed_alone(compose, compute);
   session->sum_order = SumOrder::of_ranks;
-  SavedState divided[2];
-  for (SavedState& state : divided) {
+  const auto divided = [&] {
     auto simulation = compose();
     if (const auto* parts = dynamic_cast<const mpi::DividedBodies*>(simulation.decomposition())) {
       double pairs = static_cast<double>(parts->evaluated_pairs());
       mpi::reduce(MPI_COMM_WORLD, {&pairs, 1}, {});
       CHECK(pairs == static_cast<double>(simulation.pairs()));
     }
-    state = compute(simulation);
+    return compute(simulation);
+  };
+  const SavedState first = divided(), second = divided();
+  SavedState in_parts = first;
+  if constexpr (decltype(compose())::velocity_lag > 0.0) {
+    const DividedSetUp set_up;
+    in_parts = divided();
   }
   session->sum_order = SumOrder::of_one_process;
   if (session->rank() != 0) return;
-  REQUIRE(alone.size() == divided[0].size());
-  for (const auto& [name, array] : alone) {
+  for (const SavedState* state : std::initializer_list<const SavedState*>{&first, &second, &in_parts}) {
+    REQUIRE(alone.size() == state->size());
+    for (const auto& [name, array] : alone) {
+      INFO("state: ", name);
+      REQUIRE(state->contains(name));
+      CHECK(difference(array, state->at(name)) <= (session->size() == 1 ? 0.0 : tolerance));
+    }
+  }
+  for (const auto& [name, array] : first) {
     INFO("state: ", name);
-    REQUIRE(divided[0].contains(name));
-    CHECK(difference(array, divided[0][name]) <= (session->size() == 1 ? 0.0 : tolerance));
-    CHECK(divided[0][name] == divided[1][name]);
+    CHECK(array == second.at(name));
   }
 }
 
@@ -248,6 +278,111 @@ TEST_CASE("Memory of the table falls with the number of ranks, and all rows are 
   if (session->size() == 1) CHECK(here == all);
   else CHECK(session->largest(here) < all);
   CHECK(simulation.pairs() == body.table().pairs());
+}
+
+TEST_CASE("A body so large that its gradients are made consistent with the help of smooth fields") {
+  const auto compose = [] {
+    Body body = slab(jitter(box({.size = Point<3>(1.9 * um, 1.0 * um, 1.0 * um), .cells = {29, 14, 14}}), 0.1), 0);
+    shake(body, 20.0);
+    CHECK(body.size() >= detail::particles_for_coarse_space);
+    return simulation_of(std::move(body));
+  };
+  const auto compute = [](auto& simulation) {
+    take(simulation, 3);
+    return whole(simulation);
+  };
+  compare(compose, compute);
+  compare(compose, compute, scattered);
+}
+
+TEST_CASE("Each rank makes the rows that it needs, with the bits of one process") {
+  partitioner = mpi::partition_by_metis;
+  const auto compose = [] { return slab(jitter(box({.size = Point<3>(1.9 * um, 1.0 * um, 1.0 * um), .cells = {29, 14, 14}}), 0.1), 0); };
+  Ranks::current = nullptr;
+  const Body alone = compose();
+  Ranks::current = session;
+  const DividedSetUp set_up;
+  const Body parts = compose();
+  const PointTable &all = alone.table(), &here = parts.table();
+  CHECK(here.pairs() == all.pairs());
+  CHECK((here.size() < all.size()) == (session->size() > 1));
+  CHECK(parts.masses() == alone.masses());
+  CHECK(parts.nodal_volumes() == alone.nodal_volumes());
+  CHECK(here.color_offsets == all.color_offsets);
+  std::size_t different = 0, rows = 0;
+  for (std::size_t q = 0; q < all.points(); ++q) {
+    const bool evaluated = parts.share() == nullptr || parts.share()->evaluated[q] != 0;
+    CHECK(here.row(q).empty() == !evaluated);
+    if (!evaluated) continue;
+    ++rows;
+    for (std::size_t e = 0; e < all.row(q).size(); ++e) {
+      const TableEntry a = all.row(q)[e], b = here.row(q)[e];
+      if (a.particle != b.particle || a.vector() != b.vector()) ++different;
+    }
+    for (std::size_t e = 0; e < all.bonds(q).size(); ++e) different += all.bonds(q)[e] != here.bonds(q)[e] ? 1 : 0;
+    different += all.stabilization_scale[q] != here.stabilization_scale[q] ? 1 : 0;
+  }
+  CHECK(different == 0);
+  CHECK(rows >= all.points() / static_cast<std::size_t>(session->size()));
+}
+
+TEST_CASE("A cloud that cannot be sampled is refused on all ranks, whichever finds it") {
+  const DividedSetUp set_up;
+  for (const int cells : {7, 17}) {  // the second one large enough for a coarse space
+    CAPTURE(cells);
+    PointCloud<3> cloud = box({.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {cells, cells, cells}});
+    cloud.positions.back() += Point<3>::Constant(0.42 * um / cells);  // a corner
+    const auto told = [&] {
+      try {
+        Body body{"slab", cloud, Rkpm<3>{}, NodalCentroids{.condition_limit = 35.0, .points_per_chunk = 24}, Materials{Region{"body", NeoHookean::from_young(1e4, 0.3)}}};
+      } catch (const GeometryError& error) {
+        return std::string(error.what());
+      }
+      return std::string();
+    };
+    const std::string divided = told();
+    CHECK(divided.find("condition number") != std::string::npos);
+    CHECK_NOTHROW(session->require_same("message", divided));
+    Ranks::current = nullptr;
+    const std::string alone = told();
+    Ranks::current = session;
+    const auto point = [](const std::string& text) { return std::stoul(text.substr(text.find("point ") + 6)); };
+    CHECK(point(alone) > cloud.size() / 2);  // near the corner
+    CHECK(point(divided) > cloud.size() / 2);
+  }
+}
+
+TEST_CASE("Supports beyond half a period are refused on all ranks, as in one process") {
+  const DividedSetUp set_up;
+  const auto body = [] {
+    return Body{"slab", box({.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {7, 7, 7}, .periodic = {true, false, false}}), Rkpm<3>{.support = 4.0}, NodalCentroids{.points_per_chunk = 24},
+                Materials{Region{"body", NeoHookean::from_young(1e4, 0.3)}}};
+  };
+  CHECK_THROWS_AS((void)body(), ParameterError);
+}
+
+TEST_CASE("A periodic bar, a ring and a body of one chunk") {
+  const auto steps = [](auto& simulation) {
+    take(simulation, 40);
+    return whole(simulation);
+  };
+  const auto shaken = [](auto body) {
+    shake(body, 1.0);
+    return Simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{}, CentralDifference{.safety = 0.5}};
+  };
+  const Materials rubber{Region{"body", NeoHookean::from_young(1e4, 0.3)}};
+  const auto bar = [&] {
+    return shaken(Body{"bar", jitter(box({.size = Point<3>(2.0 * um, 0.5 * um, 0.5 * um), .cells = {14, 4, 4}, .periodic = {true, false, false}}), 0.1), Rkpm<3>{},
+                       NodalCentroids{.points_per_chunk = 24}, rubber});
+  };
+  const auto ring = [&] {
+    return shaken(Body{"ring", meridian(Disc{.radius = 1.0 * um, .height = 0.5 * um, .core_cells = 8, .rings = 4, .layers = 6}), Rkpm<2>{}, NodalCentroids{.points_per_chunk = 16}, rubber});
+  };
+  const auto small = [&] { return shaken(Body{"small", box({.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {3, 3, 3}}), Rkpm<3>{}, NodalCentroids{}, rubber}); };
+  compare(bar, steps, scattered);
+  compare(ring, steps, scattered);
+  compare(small, steps);
+  compare_by_rank(small, steps, 1e-11);
 }
 
 TEST_CASE("A cell on a substrate") {
@@ -402,6 +537,15 @@ TEST_CASE("Ranks that compose different simulations are told so") {
   session->sum_order = session->rank() == 1 ? SumOrder::of_ranks : SumOrder::of_one_process;
   CHECK_THROWS_WITH_AS(block(), "Rank 1 has another order of sums than rank 0: all ranks must run the same program with the same options.", ParameterError);
   session->sum_order = SumOrder::of_one_process;
+  session->set_up = session->rank() == 1 ? SetUp::divided : SetUp::whole;
+  CHECK_THROWS_WITH_AS(block(), "Rank 1 has another set-up of bodies than rank 0: all ranks must run the same program with the same options.", ParameterError);
+  session->set_up = SetUp::divided;
+  const auto supports = [] { return Body{"slab", box({.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {4, 4, 4}}), Rkpm<3>{.support = session->rank() == 1 ? 2.0 : 2.1}, NodalCentroids{}, Materials{Region{"body", YangVisco<>{}}}}; };
+  CHECK_THROWS_WITH_AS((void)supports(), "Rank 1 has another body than rank 0: all ranks must run the same program with the same options.", ParameterError);
+  const Body alike = slab(box({.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {4, 4, 4}}), 24);
+  session->set_up = SetUp::whole;
+  Body copy = alike;
+  CHECK_THROWS_AS(StaticProblem(copy, {}), ParameterError);
   CHECK_THROWS_AS(session->require_same("option", std::to_string(session->rank())), ParameterError);
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <utility>
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -50,15 +51,29 @@ void parallel_for(std::size_t count, const Body& body) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Σ_i term(i) over [0, count), on all threads, where `zero` changes no sum. Terms are added up in 64 parts, whatever the number of threads: the same
-/// bits for any.
+/// Sums are added up in so many parts, whatever the number of threads or of processes.
+inline constexpr std::size_t sum_parts = 64;
+
+/// The items of part p of a sum over [0, count): [first, last).
+[[nodiscard]] inline std::pair<std::size_t, std::size_t> sum_part(std::size_t count, std::size_t p) {
+  const std::size_t length = (count + sum_parts - 1) / sum_parts;
+  return {std::min(count, p * length), std::min(count, (p + 1) * length)};
+}
+
+/// Σ_i term(i) over [0, count), on all threads, where `zero` changes no sum. Terms are added up in parts: the same bits for any number of threads. Some terms are
+/// made before they are added: a product is rounded before it is, as it is where terms come from several processes.
 template <class T = double, class Term>
 [[nodiscard]] T parallel_sum(std::size_t count, const Term& term, const T& zero = T()) {
-  std::array<T, 64> parts;
-  const std::size_t size = (count + parts.size() - 1) / parts.size();
-  parallel_for(parts.size(), [&](std::size_t p) {
+  std::array<T, sum_parts> parts;
+  parallel_for(sum_parts, [&](std::size_t p) {
     T sum = zero;
-    for (std::size_t i = p * size; i < std::min(count, (p + 1) * size); ++i) sum += term(i);
+    const auto [first, last] = sum_part(count, p);
+    std::array<T, 64> terms;
+    for (std::size_t i = first; i < last; i += terms.size()) {
+      const std::size_t n = std::min(terms.size(), last - i);
+      for (std::size_t k = 0; k < n; ++k) terms[k] = term(i + k);
+      for (std::size_t k = 0; k < n; ++k) sum += terms[k];
+    }
     parts[p] = sum;
   });
   T total = zero;

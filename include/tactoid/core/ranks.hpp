@@ -8,11 +8,14 @@
 #include <vector>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/tensor.hpp>
 
 namespace tactoid {
 
 class Decomposition;  // simulation/decomposition.hpp
+class RowShare;       // quadrature/row_share.hpp
 struct SharedBody;    // simulation/decomposition.hpp
+struct TableOutline;  // quadrature/row_share.hpp
 
 /// How the ranks add up what several of them contribute to: forces on particles at their borders, energies.
 enum class SumOrder {
@@ -21,6 +24,15 @@ enum class SumOrder {
   /// Rank after rank: each row is evaluated once, and forces go back to the ranks that own their particles. The same bits for the same division; for
   /// another number of ranks the same but for round-off.
   of_ranks
+};
+
+/// Which rows of a body's table a rank makes when the body is composed.
+enum class SetUp {
+  /// All; those of other ranks are dropped when the simulation is composed.
+  whole,
+  /// Those that touch its own particles, of quadratures that can (NodalCentroids): set-up takes less time and memory on each rank, and ends with the same
+  /// bits. Such bodies take explicit integrators.
+  divided
 };
 
 /// The processes (ranks, in the words of MPI) that compute one simulation together. The library knows them by this interface
@@ -35,6 +47,8 @@ class Ranks {
 
   SumOrder sum_order = SumOrder::of_one_process;  ///< of simulations, as it is when they are composed; the same on all ranks
 
+  SetUp set_up = SetUp::whole;                    ///< of bodies, as it is when they are composed; the same on all ranks
+
   [[nodiscard]] virtual int rank() const = 0;  ///< of this process, in [0, size())
   [[nodiscard]] virtual int size() const = 0;  ///< number of processes
 
@@ -43,7 +57,10 @@ class Ranks {
   /// What rank `of` gives, for all. Collective.
   [[nodiscard]] virtual std::string text_of(int of, const std::string& text) = 0;
   /// Numbers of which each rank knows some, for all: those of rank r are values[first[r]] .. values[first[r + 1] − 1]. Collective.
+  ///@{
   virtual void gather(std::span<double> values, std::span<const std::size_t> first) = 0;
+  virtual void gather(std::span<Index> values, std::span<const std::size_t> first) = 0;
+  ///@}
   /// Throws ParameterError on all ranks, with the first rank that differs from rank 0 and what of it, unless all give the same
   /// text. Collective.
   void require_same(std::string_view what, const std::string& text) {
@@ -53,6 +70,16 @@ class Ranks {
                            " than rank 0: all ranks must run the same program with the same options.");
   }
 
+  /// Throws as require_same() where ranks do not set up their bodies alike. Collective; to be the first that a rank asks the others about a body.
+  void require_same_set_up() { require_same("set-up of bodies", set_up == SetUp::whole ? "whole" : "divided"); }
+  /// The failure of the first rank that has one, on all ranks; empty without any. Collective.
+  [[nodiscard]] std::string first_failure(const std::string& failure) {
+    const long first = size() - largest(failure.empty() ? 0 : size() - rank());
+    return first < size() ? text_of(static_cast<int>(first), failure) : std::string();
+  }
+
+  /// Divides a table among the ranks before its rows are made. Collective.
+  [[nodiscard]] virtual std::shared_ptr<RowShare> divide(const TableOutline& outline) = 0;
   /// Divides bodies among the ranks. Collective; throws ParameterError on all ranks where these have not composed the same.
   [[nodiscard]] virtual std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) = 0;
 

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <metis.h>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/simulation/decomposition.hpp>
 
 namespace tactoid::mpi {
@@ -39,11 +42,10 @@ using Partitioner = std::function<std::vector<int>(const ChunkGraph& graph, int 
   return touched;
 }
 
-/// Adds the chunks of a body to a graph.
-inline void add_chunks(ChunkGraph& graph, const SharedBody& body, const std::vector<std::vector<Index>>& touched) {
-  const PointTable& table = *body.table;
+/// Adds the chunks of a body with so many particles to a graph: what each touches, and its cost.
+inline void add_chunks(ChunkGraph& graph, std::size_t particles, const std::vector<std::vector<Index>>& touched, const std::vector<double>& cost) {
   const std::size_t before = graph.size();
-  std::vector<std::vector<std::size_t>> chunks_of(table.particles);
+  std::vector<std::vector<std::size_t>> chunks_of(particles);
   for (std::size_t c = 0; c < touched.size(); ++c)
     for (const Index i : touched[c]) chunks_of[i].push_back(c);
   std::vector<std::size_t> common(touched.size(), 0);
@@ -59,10 +61,17 @@ inline void add_chunks(ChunkGraph& graph, const SharedBody& body, const std::vec
       graph.shared.push_back(std::exchange(common[other], 0));
     }
     graph.first.push_back(graph.neighbors.size());
-    const PointChunk& chunk = table.chunks[c];
-    graph.cost.push_back(static_cast<double>(table.offsets[chunk.end] - table.offsets[chunk.begin]) +
-                         body.region_cost[chunk.region] * static_cast<double>(chunk.end - chunk.begin));
   }
+  graph.cost.insert(graph.cost.end(), cost.begin(), cost.end());
+}
+
+/// Of the chunks of a body, in pairs.
+[[nodiscard]] inline std::vector<double> costs_of_chunks(const SharedBody& body) {
+  std::vector<double> costs;
+  for (const PointChunk& chunk : body.table->chunks)
+    costs.push_back(static_cast<double>(body.table->offsets[chunk.end] - body.table->offsets[chunk.begin]) +
+                    body.region_cost[chunk.region] * static_cast<double>(chunk.end - chunk.begin));
+  return costs;
 }
 
 /// By METIS: equal costs, and few particles that several ranks need. Between two exchanges a rank works on all its chunks without
@@ -89,6 +98,29 @@ inline void add_chunks(ChunkGraph& graph, const SharedBody& body, const std::vec
     throw ComputationError("METIS could not partition the bodies.");
   std::copy(part.begin(), part.end(), owner.begin());
   return owner;
+}
+
+/// A rank for every chunk of a graph, as rank 0 partitions it. Collective; where the partitioner fails, ParameterError on all ranks.
+[[nodiscard]] inline std::vector<int> partition(Ranks& ranks, const ChunkGraph& graph, const Partitioner& partitioner) {
+  std::vector<int> owner;
+  std::string failure;
+  if (ranks.rank() == 0) {
+    try {
+      owner = partitioner(graph, ranks.size());
+      const bool valid = owner.size() == graph.size() && std::all_of(owner.begin(), owner.end(), [&](int r) { return r >= 0 && r < ranks.size(); });
+      if (!valid) failure = "A Partitioner gives a rank, from 0 on, for each chunk.";
+    } catch (const std::exception& error) {  // all ranks shall know
+      failure = error.what();
+    }
+  }
+  failure = ranks.text_of(0, failure);
+  if (!failure.empty()) throw ParameterError(failure);
+  std::vector<Index> told(graph.size());
+  std::copy(owner.begin(), owner.end(), told.begin());
+  std::vector<std::size_t> first(static_cast<std::size_t>(ranks.size()) + 1, told.size());
+  first[0] = 0;
+  ranks.gather(told, first);
+  return {told.begin(), told.end()};
 }
 
 }  // namespace tactoid::mpi

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -14,6 +13,7 @@
 
 #include <mpi.h>
 
+#include <tactoid/core/fingerprint.hpp>
 #include <tactoid/mpi/chunk_graph.hpp>
 #include <tactoid/mpi/owned_values.hpp>
 #include <tactoid/mpi/parcels.hpp>
@@ -22,44 +22,39 @@
 
 namespace tactoid::mpi {
 
-/// The bodies of a simulation, divided among ranks. Every rank has composed all of them; rank 0 partitions.
+/// The bodies of a simulation, divided among ranks. Every rank has composed all of them, whole or but for the rows of other ranks; rank 0 partitions.
 class DividedBodies final : public Decomposition {
  public:
   /// Collective. Throws ParameterError on all ranks where these have not composed the same bodies.
   DividedBodies(Ranks& ranks, MPI_Comm comm, std::vector<SharedBody> bodies, const Partitioner& partitioner)
       : ranks_(ranks), comm_(comm), bodies_(std::move(bodies)) {
     require_same_bodies();
-    std::vector<std::vector<std::vector<Index>>> touched;
-    ChunkGraph graph;
-    for (const SharedBody& body : bodies_) {
-      touched.push_back(touched_particles(*body.table));
-      add_chunks(graph, body, touched.back());
-    }
-    std::vector<int> owner(graph.size(), 0);
-    std::string failure;
-    if (ranks_.rank() == 0) {
-      try {
-        owner = checked(partitioner(graph, ranks_.size()), graph);
-      } catch (const std::exception& error) {  // all ranks shall know
-        failure = error.what();
-      }
-    }
-    failure = ranks_.text_of(0, failure);
-    if (!failure.empty()) throw ParameterError(failure);
-    succeeded(MPI_Bcast(owner.data(), as_count(owner.size()), MPI_INT, 0, comm_));
-    std::size_t first = 0;
+    std::vector<std::vector<std::vector<Index>>> touched(bodies_.size());
+    ChunkGraph graph;  // of the bodies that every rank has made whole
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const auto begin = owner.begin() + static_cast<std::ptrdiff_t>(first);
-      first += touched[b].size();
-      parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], std::vector<int>(begin, owner.begin() + static_cast<std::ptrdiff_t>(first)), touched[b]));
+      if (bodies_[b].made != nullptr) continue;
+      touched[b] = touched_particles(*bodies_[b].table);
+      add_chunks(graph, bodies_[b].table->particles, touched[b], costs_of_chunks(bodies_[b]));
+    }
+    const std::vector<int> owner = graph.size() > 0 ? partition(ranks_, graph, partitioner) : std::vector<int>();
+    auto next = owner.begin();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const PointTable& table = *bodies_[b].table;
+      if (const RowShare* made = bodies_[b].made; made != nullptr) {
+        parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], made->chunk_owner, made->particle_owner));
+      } else {
+        const auto begin = std::exchange(next, next + static_cast<std::ptrdiff_t>(table.chunks.size()));
+        const std::vector<int> of_chunks(begin, next);
+        parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], of_chunks, owners_of_particles(table, of_chunks, touched[b])));
+      }
       if (ranks_.sum_order == SumOrder::of_ranks) sums_.emplace_back(SumByRank(comm_, parts_.back()->particle_owner));
       else sums_.emplace_back(SumInOrder(comm_, parts_.back()->particle_owner));
-      evaluated_pairs_ += parts_.back()->evaluated_pairs(*bodies_[b].table);
+      evaluated_pairs_ += parts_.back()->evaluated_pairs(table);
     }
     const auto is_known = [](const SharedBody& body, Index i) { return body.known_to_all[i] != 0; };
     known_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::known, is_known));
-    whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::whole, [](const SharedBody&, Index) { return true; }));
     find_neighbors();
+    for (SharedBody& body : bodies_) body.made = nullptr;  // its body gets the share that is here
   }
   ~DividedBodies() override { finish_exchange(); }
 
@@ -78,8 +73,11 @@ class DividedBodies final : public Decomposition {
     exchanging_ = false;
   }
   void complete() override {
+    if (!whole_) whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::whole, [](const SharedBody&, Index) { return true; }));
     whole_->begin();
     whole_->end();
+    // Buffers of whole bodies would be most of what a rank holds; implicit steps ask for them all the time.
+    if (std::none_of(bodies_.begin(), bodies_.end(), [](const SharedBody& body) { return body.keep_rows; })) whole_.reset();
   }
   [[nodiscard]] double sum(std::size_t body, std::span<const double> terms) override { return sums_[body](terms); }
   [[nodiscard]] std::string told_by_owner(std::size_t body, std::size_t point, const std::string& text) override {
@@ -93,29 +91,22 @@ class DividedBodies final : public Decomposition {
   [[nodiscard]] std::size_t sent_to_neighbors() const { return neighbors_->sent(); }
 
  private:
-  /// A hash of what every rank must have composed alike: places, gradients, and the state.
+  /// A hash of what every rank must have composed alike: volumes, gradients, and the state; of a body whose rows each has made for itself, what it needs no rows for.
   void require_same_bodies() {
-    std::uint64_t hash = 0xCBF29CE484222325ull;
-    const auto add = [&](std::uint64_t word) { hash = (hash ^ word) * 0x100000001B3ull, hash ^= hash >> 29; };
+    Fingerprint fingerprint;
     for (const SharedBody& body : bodies_) {
-      add(body.table->particles);
-      for (const double V : body.table->volume) add(std::bit_cast<std::uint64_t>(V));
-      for (std::size_t e = 0; e < body.table->size(); ++e) {
+      fingerprint.add(std::uint64_t{body.table->particles});
+      for (const double V : body.table->volume) fingerprint.add(V);
+      for (std::size_t e = 0; e < body.table->size() && body.made == nullptr; ++e) {
         const TableEntry entry = body.table->entry(e);
-        add(entry.particle), add(std::bit_cast<std::uint64_t>(entry.gradient[0]));
+        fingerprint.add(std::uint64_t{entry.particle}), fingerprint.add(entry.gradient[0]);
       }
-      for (const Field* field : body.whole)
+      for (const Field* field : body.made == nullptr ? body.whole : body.motion)
         for (const Vector4& x : *field)
-          for (int k = 0; k < 3; ++k) add(std::bit_cast<std::uint64_t>(x[k]));
+          for (int k = 0; k < 3; ++k) fingerprint.add(x[k]);
     }
-    ranks_.require_same("simulation", std::to_string(hash));
+    ranks_.require_same("simulation", fingerprint.text());
   }
-  [[nodiscard]] std::vector<int> checked(std::vector<int> owner, const ChunkGraph& graph) const {
-    const bool valid = owner.size() == graph.size() && std::all_of(owner.begin(), owner.end(), [&](int r) { return r >= 0 && r < ranks_.size(); });
-    if (!valid) throw ParameterError("A Partitioner gives a rank, from 0 on, for each chunk.");
-    return owner;
-  }
-
   /// For each rank the particles that it owns, of those that are included.
   template <class Include>
   [[nodiscard]] std::vector<Parcel> parcels_of_owners(std::vector<Field*> SharedBody::*fields, const Include& include) const {

@@ -95,6 +95,18 @@ class SumByRank {
   std::vector<Index> own_;
 };
 
+/// Per part of a sum over items: the rank that owns most of them.
+[[nodiscard]] inline std::vector<int> summing_ranks(const std::vector<int>& owner, int ranks) {
+  std::vector<int> result;
+  for (std::size_t p = 0; p < sum_parts; ++p) {
+    const auto [first, last] = sum_part(owner.size(), p);
+    std::vector<std::size_t> owned(static_cast<std::size_t>(ranks), 0);
+    for (std::size_t i = first; i < last; ++i) ++owned[static_cast<std::size_t>(owner[i])];
+    result.push_back(static_cast<int>(std::max_element(owned.begin(), owned.end()) - owned.begin()));
+  }
+  return result;
+}
+
 /// Sums over items that each belong to one rank, with the bits of parallel_sum: each of its parts is summed, in its order, by the
 /// rank that owns most of it, to which the other ones send their terms.
 class SumInOrder {
@@ -106,16 +118,14 @@ class SumInOrder {
     MPI_Comm_size(ranks_, &size);
     MPI_Comm_rank(ranks_, &rank);
     const auto n = static_cast<std::size_t>(size);
-    const std::size_t length = (owner.size() + parts - 1) / parts;
     sent_counts_.assign(n, 0), received_counts_.assign(n, 0);
     std::vector<std::vector<Index>> sent(n);
     std::vector<std::size_t> of_rank;  // owner's rank of each term that arrives here
-    for (std::size_t p = 0; p < parts; ++p) {
-      const std::size_t first = std::min(owner.size(), p * length), last = std::min(owner.size(), (p + 1) * length);
-      std::vector<std::size_t> owned(n, 0);
-      for (std::size_t i = first; i < last; ++i) ++owned[static_cast<std::size_t>(owner[i])];
-      const auto here = static_cast<std::size_t>(std::max_element(owned.begin(), owned.end()) - owned.begin());
-      const bool mine = static_cast<int>(here) == rank;
+    const std::vector<int> summing = summing_ranks(owner, size);
+    for (std::size_t p = 0; p < sum_parts; ++p) {
+      const auto [first, last] = sum_part(owner.size(), p);
+      const auto here = static_cast<std::size_t>(summing[p]);
+      const bool mine = summing[p] == rank;
       for (std::size_t i = first; i < last; ++i) {
         if (owner[i] == rank) sent[here].push_back(static_cast<Index>(i));
         if (mine) of_rank.push_back(static_cast<std::size_t>(owner[i]));
@@ -142,11 +152,11 @@ class SumInOrder {
     succeeded(MPI_Ialltoallv(out_.data(), sent_counts_.data(), sent_places_.data(), MPI_DOUBLE, in_.data(), received_counts_.data(),
                              received_places_.data(), MPI_DOUBLE, ranks_, &request));
     wait(request);
-    std::array<double, parts> sums{};
-    for (std::size_t p = 0, k = 0; p < parts; ++p)
+    std::array<double, sum_parts> sums{};
+    for (std::size_t p = 0, k = 0; p < sum_parts; ++p)
       for (; k < end_of_part_[p]; ++k) sums[p] += in_[place_[k]];
     // Adding zeros is exact.
-    succeeded(MPI_Iallreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(parts), MPI_DOUBLE, MPI_SUM, ranks_, &request));
+    succeeded(MPI_Iallreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sum_parts), MPI_DOUBLE, MPI_SUM, ranks_, &request));
     wait(request);
     double total = 0.0;
     for (const double sum : sums) total += sum;
@@ -154,11 +164,10 @@ class SumInOrder {
   }
 
  private:
-  static constexpr std::size_t parts = 64;  // of parallel_sum
   MPI_Comm ranks_ = MPI_COMM_NULL;
   std::vector<Index> sent_;                         // own items, by the rank that they are sent to
   std::vector<std::size_t> place_;                  // of the terms of the parts that are summed here, in the order of the sum
-  std::array<std::size_t, parts> end_of_part_{};    // in place_
+  std::array<std::size_t, sum_parts> end_of_part_{};    // in place_
   std::vector<int> sent_counts_, sent_places_, received_counts_, received_places_;
   std::vector<double> out_, in_;
 };

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <mpi.h>
@@ -13,49 +16,60 @@
 
 namespace tactoid::mpi {
 
-/// One body, divided among ranks: who owns which particle, and which rows this rank evaluates.
+/// The rank of each point: that of its chunk.
+[[nodiscard]] inline std::vector<int> owners_of_points(const PointTable& table, const std::vector<int>& chunk_owner) {
+  std::vector<int> owners(table.points(), 0);
+  for (std::size_t c = 0; c < table.chunks.size(); ++c)
+    for (std::size_t q = table.chunks[c].begin; q < table.chunks[c].end; ++q) owners[q] = chunk_owner[c];
+  return owners;
+}
+
+/// The rank of each particle: where its first point is; of one without a point, where some row touches it. `touched` is as touched_particles gives it.
+[[nodiscard]] inline std::vector<int> owners_of_particles(const PointTable& table, const std::vector<int>& chunk_owner, const std::vector<std::vector<Index>>& touched) {
+  const std::vector<int> of_point = owners_of_points(table, chunk_owner);
+  std::vector<int> owners(table.particles, -1);
+  for (std::size_t q = 0; q < table.points(); ++q) {
+    int& owner = owners[table.owner[q]];
+    if (owner < 0) owner = of_point[q];
+  }
+  for (std::size_t c = 0; c < touched.size(); ++c)
+    for (const Index i : touched[c])
+      if (owners[i] < 0) owners[i] = chunk_owner[c];
+  for (int& owner : owners) owner = std::max(owner, 0);
+  return owners;
+}
+
+/// One body, divided among ranks: which rows this rank evaluates, and what it tells the others.
 class PartOfBody final : public BodyShare {
  public:
-  std::vector<int> particle_owner;  ///< per particle
-  std::vector<int> point_owner;     ///< per point: the rank of its chunk
-  std::vector<char> needed;         ///< per particle: 1 where a row that is evaluated here touches it
+  std::vector<int> point_owner;  ///< per point: the rank of its chunk
+  std::vector<char> needed;      ///< per particle: 1 where a row that is evaluated here touches it
 
-  /// Collective. `chunk_owner`: a rank per chunk; `touched` as touched_particles gives it. All the same on all ranks; `ranks` must outlive it.
-  PartOfBody(MPI_Comm ranks, SumOrder sum_order, const SharedBody& body, const std::vector<int>& chunk_owner, const std::vector<std::vector<Index>>& touched)
-      : ranks_(ranks), keep_rows_(body.keep_rows), chunk_values_(ranks, chunk_owner) {
+  /// Of a table that is about to get its rows, in the order of one process; follow_rows() completes it. A rank for each chunk and each particle, the same on all ranks;
+  /// `ranks` must outlive it.
+  PartOfBody(MPI_Comm ranks, const PointTable& table, std::vector<int> chunk_ranks, std::vector<int> particle_ranks) : ranks_(ranks), chunk_values_(ranks, chunk_ranks) {
+    MPI_Comm_rank(ranks, &rank_);
+    chunk_owner = std::move(chunk_ranks);
+    particle_owner = std::move(particle_ranks);
+    point_owner = owners_of_points(table, chunk_owner);
+    int size = 1;
+    MPI_Comm_size(ranks, &size);
+    summing_ = summing_ranks(particle_owner, size);
+    for (Index i = 0; i < particle_owner.size(); ++i)
+      if (particle_owner[i] == rank_) own.push_back(i);
+    local.resize(particle_owner.size());
+    std::iota(local.begin(), local.end(), Index{0});
+  }
+  /// Of a body that is composed. Collective.
+  PartOfBody(MPI_Comm ranks, SumOrder sum_order, const SharedBody& body, std::vector<int> chunk_ranks, std::vector<int> particle_ranks)
+      : PartOfBody(ranks, *body.table, std::move(chunk_ranks), std::move(particle_ranks)) {
     order = sum_order;
-    int rank = 0;
-    MPI_Comm_rank(ranks, &rank);
-    const PointTable& table = *body.table;
-    point_owner.assign(table.points(), 0);
-    for (std::size_t c = 0; c < table.chunks.size(); ++c)
-      for (std::size_t q = table.chunks[c].begin; q < table.chunks[c].end; ++q) point_owner[q] = chunk_owner[c];
-    // A particle goes where its first point is; one without a point, where some row touches it.
-    particle_owner.assign(table.particles, -1);
-    for (std::size_t q = 0; q < table.points(); ++q) {
-      int& owner = particle_owner[table.owner[q]];
-      if (owner < 0) owner = point_owner[q];
-    }
-    for (std::size_t c = 0; c < touched.size(); ++c)
-      for (const Index i : touched[c])
-        if (particle_owner[i] < 0) particle_owner[i] = chunk_owner[c];
-    for (int& owner : particle_owner) owner = std::max(owner, 0);
-
-    evaluated.assign(table.points(), 0);
-    needed.assign(table.particles, 0);
-    for (std::size_t q = 0; q < table.points(); ++q) {
-      const auto row = table.row(q);
-      evaluated[q] = point_owner[q] == rank || (order == SumOrder::of_one_process && std::any_of(row.begin(), row.end(), [&](const TableEntry& e) {
-                       return particle_owner[e.particle] == rank;
-                     }));
-      if (!evaluated[q]) continue;
-      needed[table.owner[q]] = 1;
-      for (const TableEntry& entry : row) needed[entry.particle] = 1;
-    }
-    for (Index i = 0; i < table.particles; ++i)
-      if (needed[i] || particle_owner[i] == rank || body.known_to_all[i]) local.push_back(i);
-    point_values_ = OwnedValues(ranks, point_owner);
-    if (order == SumOrder::of_ranks) find_ways_back(body, rank);
+    keep_rows_ = body.keep_rows;
+    follow_rows(*body.table);
+    local.clear();
+    for (Index i = 0; i < body.table->particles; ++i)
+      if (needed[i] || particle_owner[i] == rank_ || body.known_to_all[i]) local.push_back(i);
+    if (order == SumOrder::of_ranks) find_ways_back(body);
   }
 
   /// Pairs of the rows that are evaluated here.
@@ -66,9 +80,70 @@ class PartOfBody final : public BodyShare {
     return pairs;
   }
 
+  [[nodiscard]] int rank() const override { return rank_; }
+  void follow_rows(const PointTable& table) override {
+    evaluated.assign(table.points(), 0);
+    needed.assign(table.particles, 0);
+    for (std::size_t q = 0; q < table.points(); ++q) {
+      const auto row = table.row(q);
+      evaluated[q] = point_owner[q] == rank_ || (order == SumOrder::of_one_process && std::any_of(row.begin(), row.end(), [&](const TableEntry& e) {
+                       return particle_owner[e.particle] == rank_;
+                     }));
+      if (!evaluated[q]) continue;
+      needed[table.owner[q]] = 1;
+      for (const TableEntry& entry : row) needed[entry.particle] = 1;
+    }
+    here.clear();
+    for (Index i = 0; i < table.particles; ++i)
+      if (needed[i] || particle_owner[i] == rank_) here.push_back(i);
+    ghosts_.reset();
+  }
+  void exchange(Field& field) override {
+    if (!ghosts_) {
+      std::vector<std::vector<Index>> asked(ranks_count());
+      for (const Index i : here)
+        if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
+      ghosts_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, exchange_lists(ranks_, asked)), parcels_of(1, asked));
+    }
+    send(*ghosts_, field);
+  }
+  void complete(std::span<double> values) override { OwnedValues(ranks_, particle_owner).gather(values, 1); }
+  [[nodiscard]] bool sums(std::size_t p) const override { return summing_[p] == rank_; }
+  void bring_to_parts(Field& field) override {
+    if (!to_parts_) {
+      std::vector<std::vector<Index>> out(ranks_count()), in(out);
+      for (std::size_t p = 0; p < sum_parts; ++p) {
+        const auto [first, last] = sum_part(particle_owner.size(), p);
+        for (std::size_t i = first; i < last; ++i) {
+          if (particle_owner[i] == summing_[p]) continue;
+          if (particle_owner[i] == rank_) out[static_cast<std::size_t>(summing_[p])].push_back(static_cast<Index>(i));
+          if (summing_[p] == rank_) in[static_cast<std::size_t>(particle_owner[i])].push_back(static_cast<Index>(i));
+        }
+      }
+      to_parts_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, out), parcels_of(1, in));
+    }
+    send(*to_parts_, field);
+  }
+  void combine(std::span<double> values) override {
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Iallreduce(MPI_IN_PLACE, values.data(), as_count(values.size()), MPI_DOUBLE, MPI_SUM, ranks_, &request));
+    wait(request);
+  }
+  [[nodiscard]] double largest(double number) override {
+    reduce({}, {&number, 1});
+    return number;
+  }
+  [[nodiscard]] std::size_t count_pairs(const PointTable& table) override {
+    double pairs = 0.0;
+    for (std::size_t q = 0; q < table.points(); ++q)
+      if (point_owner[q] == rank_) pairs += static_cast<double>(table.row(q).size());
+    reduce({&pairs, 1}, {});
+    return static_cast<std::size_t>(pairs);
+  }
+
   void drop_rows(PointTable& table) const override {
     if (keep_rows_) return;
-    const std::size_t pairs = table.size();
+    const std::size_t pairs = table.pairs();
     keep_evaluated(table.entries, table.offsets);
     keep_evaluated(table.single_entries, table.offsets);
     keep_evaluated(table.point_values, table.offsets);
@@ -96,30 +171,39 @@ class PartOfBody final : public BodyShare {
     wait(request);
   }
   void reduce(std::span<double> sums, std::span<double> maxima) override { mpi::reduce(ranks_, sums, maxima); }
-  void gather_points(std::span<double> values, std::size_t per_point) override { point_values_.gather(values, per_point); }
+  void gather_points(std::span<double> values, std::size_t per_point) override { OwnedValues(ranks_, point_owner).gather(values, per_point); }
 
  private:
-  /// Which forces, and which rates of points, go to other ranks, and which come.
-  void find_ways_back(const SharedBody& body, int rank) {
+  [[nodiscard]] std::size_t ranks_count() const {
     int size = 1;
     MPI_Comm_size(ranks_, &size);
-    std::vector<std::vector<Index>> particles(static_cast<std::size_t>(size)), points(particles);
+    return static_cast<std::size_t>(size);
+  }
+  /// Parcels of so many fields, which carry() names.
+  [[nodiscard]] static std::vector<Parcel> parcels_of(std::size_t fields, const std::vector<std::vector<Index>>& lists) {
+    std::vector<Parcel> parcels;
+    for (const auto& list : lists) parcels.push_back({{Piece{std::vector<Field*>(fields, nullptr), list}}});
+    return parcels;
+  }
+  static void send(ParcelsToNeighbors& parcels, Field& field) {
+    parcels.carry(std::array{&field});
+    parcels.begin();
+    parcels.end();
+  }
+  /// Which forces, and which rates of points, go to other ranks, and which come.
+  void find_ways_back(const SharedBody& body) {
+    std::vector<std::vector<Index>> particles(ranks_count()), points(particles);
     for (Index i = 0; i < needed.size(); ++i)
-      if (needed[i] && particle_owner[i] != rank) {
+      if (needed[i] && particle_owner[i] != rank_) {
         abroad.push_back(i);
         particles[static_cast<std::size_t>(particle_owner[i])].push_back(i);
       }
     for (Index q = 0; q < point_owner.size(); ++q) {
       const int particle = particle_owner[body.table->owner[q]];
-      if (point_owner[q] == rank && particle != rank) points[static_cast<std::size_t>(particle)].push_back(q);
+      if (point_owner[q] == rank_ && particle != rank_) points[static_cast<std::size_t>(particle)].push_back(q);
     }
     const std::size_t fields = body.motion.size() - 1;  // forces belong to u and v, and a flux to the director
-    const auto parcels = [&](const std::vector<std::vector<Index>>& lists) {
-      std::vector<Parcel> result;
-      for (const auto& list : lists) result.push_back({{Piece{std::vector<Field*>(fields, nullptr), list}}});
-      return result;
-    };
-    back_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels(particles), parcels(exchange_lists(ranks_, particles)), Arrival::adds);
+    back_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(fields, particles), parcels_of(fields, exchange_lists(ranks_, particles)), Arrival::adds);
     const auto arriving = exchange_lists(ranks_, points);
     for (const auto& list : points) given_counts_.push_back(list.size()), given_points.insert(given_points.end(), list.begin(), list.end());
     for (const auto& list : arriving) taken_counts_.push_back(list.size()), taken_points.insert(taken_points.end(), list.begin(), list.end());
@@ -151,9 +235,12 @@ class PartOfBody final : public BodyShare {
   }
 
   MPI_Comm ranks_;
-  bool keep_rows_;
-  OwnedValues chunk_values_, point_values_;
-  std::unique_ptr<ParcelsToNeighbors> back_;             // of forces
+  int rank_ = 0;
+  bool keep_rows_ = false;
+  OwnedValues chunk_values_;
+  std::vector<int> summing_;                                // the rank of each part of a sum
+  std::unique_ptr<ParcelsToNeighbors> ghosts_, to_parts_;  // made when they are first needed
+  std::unique_ptr<ParcelsToNeighbors> back_;               // of forces
   std::vector<std::size_t> given_counts_, taken_counts_;  // per rank
   bool points_travel_ = false;                           // on any rank
 };

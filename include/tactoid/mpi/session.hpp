@@ -19,6 +19,7 @@
 #include <tactoid/mpi/chunk_graph.hpp>
 #include <tactoid/mpi/divided_bodies.hpp>
 #include <tactoid/mpi/parcels.hpp>
+#include <tactoid/mpi/part_of_body.hpp>
 
 namespace tactoid::mpi {
 
@@ -90,18 +91,16 @@ class Session final : public Ranks {
     wait(request);
     return result;
   }
-  void gather(std::span<double> values, std::span<const std::size_t> first) override {
-    if (size_ == 1) return;
-    std::vector<int> counts, places;
-    for (std::size_t r = 0; r + 1 < first.size(); ++r) {
-      counts.push_back(as_count(first[r + 1] - first[r]));
-      places.push_back(as_count(first[r]));
-    }
-    MPI_Request request = MPI_REQUEST_NULL;
-    succeeded(MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values.data(), counts.data(), places.data(), MPI_DOUBLE, ranks_, &request));
-    wait(request);
+  void gather(std::span<double> values, std::span<const std::size_t> first) override { gather(values.data(), first, MPI_DOUBLE); }
+  void gather(std::span<Index> values, std::span<const std::size_t> first) override { gather(values.data(), first, MPI_UINT32_T); }
+  [[nodiscard]] std::shared_ptr<RowShare> divide(const TableOutline& outline) override {
+    ChunkGraph graph;
+    add_chunks(graph, outline.table->particles, outline.touched, outline.cost);
+    const std::vector<int> owner = partition(*this, graph, options_.partitioner);
+    return std::make_shared<PartOfBody>(ranks_, *outline.table, owner, owners_of_particles(*outline.table, owner, outline.touched));
   }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) override {
+    require_same_set_up();
     require_same("version of Tactoid", version);
     require_same("order of sums", std::to_string(static_cast<int>(sum_order)));
     return std::make_unique<DividedBodies>(*this, ranks_, std::move(bodies), options_.partitioner);
@@ -117,6 +116,18 @@ class Session final : public Ranks {
   }
 
  private:
+  template <class T>
+  void gather(T* values, std::span<const std::size_t> first, MPI_Datatype type) {
+    if (size_ == 1) return;
+    std::vector<int> counts, places;
+    for (std::size_t r = 0; r + 1 < first.size(); ++r) {
+      counts.push_back(as_count(first[r + 1] - first[r]));
+      places.push_back(as_count(first[r]));
+    }
+    MPI_Request request = MPI_REQUEST_NULL;
+    succeeded(MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values, counts.data(), places.data(), type, ranks_, &request));
+    wait(request);
+  }
   /// Whether all ranks call this within options_.patience.
   [[nodiscard]] bool all_are_here() {
     MPI_Request request = MPI_REQUEST_NULL;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/neighbors/neighbor_table.hpp>
 #include <tactoid/neighbors/neighbor_search.hpp>
@@ -17,8 +19,18 @@ NeighborTable neighbor_table(const PointCloud<D>& cloud, const std::vector<Point
   // Supports belong to the particles, so each particle looks for query points; then the relation is transposed. With
   // the particles in ascending order every row comes out sorted.
   const NeighborSearch<D> search(queries, cloud.period);
+  // Where the queries lie: most particles are far from those of a part of a body.
+  Point<D> low = Point<D>::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Point<D>& X : queries) low = low.cwiseMin(X), high = high.cwiseMax(X);
+  const auto is_far = [&](std::size_t i) {
+    const double reach = supports[i] * (1.0 + 1e-9);
+    for (int k = 0; k < D; ++k)
+      if (!(cloud.period[k] > 0.0) && (cloud.positions[i][k] < low[k] - reach || cloud.positions[i][k] > high[k] + reach)) return true;
+    return false;
+  };
   std::vector<std::vector<Index>> covered(cloud.size());
   parallel_for(cloud.size(), [&](std::size_t i) {
+    if (is_far(i)) return;
     std::vector<Index> found;
     search.within(cloud.positions[i], supports[i], found);
     covered[i].assign(found.begin(), found.end());

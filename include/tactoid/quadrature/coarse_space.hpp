@@ -14,6 +14,7 @@
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/quadrature/point_table.hpp>
+#include <tactoid/quadrature/row_share.hpp>
 
 namespace tactoid::detail {
 
@@ -58,66 +59,93 @@ class CoarseSpace {
   std::size_t nodes_ = 0;
 };
 
+/// Rows that stand for all of a table: smooth fields feel neighbouring rows alike.
+template <class Operator>
+struct SampledRows {
+  const Operator& S;        ///< AffineResidual of the rows
+  const PointTable& table;  ///< that they are of
+  std::size_t step = 1;     ///< from one to the next, in that table
+  double weight = 1.0;      ///< for how many rows each stands
+};
+
 /// The part of a preconditioner that acts on smooth fields: P E⁻¹ Pᵀ, with P from splines to particles and E near Pᵀ S P, between
 /// projections that leave out the affine functions: these are in the null space of S, where E⁻¹ would make much of round-off.
+/// Several processes make the same E, each for itself, and add up Pᵀ r together.
 class CoarseCorrection {
  public:
-  /// Of the operator S (AffineResidual) of a table.
+  /// Of the operator S of a table; `share` is null where this process has all of its rows.
   template <class Operator>
-  CoarseCorrection(const PointTable& table, const Operator& S) : table_(table), space_(table, particles_per_cell, most_nodes), coarse_(space_.size()) {
-    for (const Vector4& X : table.particle_position) splines_.push_back(space_.at(X.head<3>()));
-    factorize(assemble(S));
+  CoarseCorrection(const PointTable& table, const SampledRows<Operator>& rows, RowShare* share)
+      : table_(table), share_(share), space_(table, particles_per_cell, most_nodes), coarse_(space_.size()) {
+    if (share == nullptr)
+      for (const Vector4& X : table.particle_position) splines_.push_back(space_.at(X.head<3>()));
+    factorize(assemble(rows));
     affine_ = space_.affine(scale_);
+    find_parts();
   }
 
   [[nodiscard]] bool usable() const { return solver_.info() == Eigen::Success; }  ///< E could be factorised
 
-  /// z ← z + P E⁻¹ Pᵀ r, all three components.
-  void add(const Field& r, Field& z);
+  /// z ← z + P E⁻¹ Pᵀ r, all three components, at the particles of this process. Of r, which several processes share, the values at other particles are lost.
+  void add(Field& r, Field& z);
 
  private:
   using Factor = Eigen::SparseMatrix<double>;
+  /// Of each node those that are coupled to it and have no smaller number, itself included, in no order.
+  using Couplings = std::vector<std::vector<std::pair<int, double>>>;
   static constexpr double particles_per_cell = 64.0;
-  static constexpr std::size_t most_nodes = 6000;  // E is dense while it is summed: 288 MB
-  static constexpr std::size_t stride = 8;        // of the rows that E is made of
+  static constexpr std::size_t most_nodes = 6000;
   static constexpr double regularization = 1e-6;  // of E, over its diagonal: affine functions are in its null space
 
   void take_off_affine();
+  void find_parts();
+  /// Those at particle i.
+  [[nodiscard]] CoarseSpace::Splines splines(std::size_t i) const { return splines_.empty() ? space_.at(table_.particle_position[i].head<3>()) : splines_[i]; }
 
-  /// Σ_q over some of the rows, which stand for all: smooth fields feel neighbouring rows alike.
   template <class Operator>
-  [[nodiscard]] Eigen::MatrixXd assemble(const Operator& S) const {
-    const auto n = static_cast<Eigen::Index>(space_.size());
-    Eigen::MatrixXd E = Eigen::MatrixXd::Zero(n, n);
-    std::vector<int> local(space_.size(), -1);  // number of a node in the row
-    std::vector<Eigen::Index> nodes;
+  [[nodiscard]] Couplings assemble(const SampledRows<Operator>& rows) const {
+    Couplings E(space_.size());
+    std::vector<std::size_t> place(space_.size(), 0);  // of a node among the couplings of another
+    std::vector<int> local(space_.size(), -1);         // number of a node in the row
+    std::vector<int> nodes;
     std::vector<double> block;          // Pᵀ W P of the row
     std::vector<Vector4> fits;          // Pᵀ W B
-    std::array<std::pair<int, double>, 27> splines;
-    for (std::size_t q = 0; q < table_.points(); q += stride) {
+    std::array<std::pair<int, double>, 27> of_particle;
+    for (std::size_t q = 0; q < rows.table.points(); q += rows.step) {
       nodes.clear();
-      S.for_each_weighted(q, [&](Index particle, double, const Vector4&) {
-        space_.for_each(splines_[particle], [&](std::size_t node, double) {
-          if (local[node] < 0) local[node] = static_cast<int>(nodes.size()), nodes.push_back(static_cast<Eigen::Index>(node));
+      rows.S.for_each_weighted(q, [&](Index particle, double, const Vector4&) {
+        space_.for_each(splines(particle), [&](std::size_t node, double) {
+          if (local[node] < 0) local[node] = static_cast<int>(nodes.size()), nodes.push_back(static_cast<int>(node));
         });
       });
       const std::size_t m = nodes.size();
       block.assign(m * m, 0.0);
       fits.assign(m, Vector4::Zero());
-      S.for_each_weighted(q, [&](Index particle, double w, const Vector4& basis) {
+      rows.S.for_each_weighted(q, [&](Index particle, double w, const Vector4& basis) {
         std::size_t count = 0;
-        space_.for_each(splines_[particle], [&](std::size_t node, double value) { splines[count++] = {local[node], value}; });
+        space_.for_each(splines(particle), [&](std::size_t node, double value) { of_particle[count++] = {local[node], value}; });
         for (std::size_t a = 0; a < count; ++a) {
-          const double weighted = w * splines[a].second;
-          fits[static_cast<std::size_t>(splines[a].first)] += weighted * basis;
-          double* row = block.data() + static_cast<std::size_t>(splines[a].first) * m;
-          for (std::size_t b = 0; b < count; ++b) row[splines[b].first] += weighted * splines[b].second;
+          const double weighted = w * of_particle[a].second;
+          fits[static_cast<std::size_t>(of_particle[a].first)] += weighted * basis;
+          double* row = block.data() + static_cast<std::size_t>(of_particle[a].first) * m;
+          for (std::size_t b = 0; b < count; ++b) row[of_particle[b].first] += weighted * of_particle[b].second;
         }
       });
-      const double factor = static_cast<double>(stride) * table_.volume[q] * table_.volume[q];
-      for (std::size_t a = 0; a < m; ++a)
-        for (std::size_t b = 0; b < m; ++b) E(nodes[b], nodes[a]) += factor * (block[a * m + b] - fits[a].dot(fits[b]));
-      for (const Eigen::Index node : nodes) local[static_cast<std::size_t>(node)] = -1;
+      const double factor = rows.weight * rows.table.volume[q] * rows.table.volume[q];
+      for (std::size_t a = 0; a < m; ++a) {
+        auto& coupled = E[static_cast<std::size_t>(nodes[a])];
+        for (std::size_t k = 0; k < coupled.size(); ++k) place[static_cast<std::size_t>(coupled[k].first)] = k;
+        for (std::size_t b = 0; b < m; ++b) {
+          if (nodes[b] < nodes[a]) continue;
+          std::size_t& k = place[static_cast<std::size_t>(nodes[b])];
+          if (k >= coupled.size() || coupled[k].first != nodes[b]) {
+            k = coupled.size();
+            coupled.emplace_back(nodes[b], 0.0);
+          }
+          coupled[k].second += factor * (block[a * m + b] - fits[a].dot(fits[b]));
+        }
+      }
+      for (const int node : nodes) local[static_cast<std::size_t>(node)] = -1;
     }
     return E;
   }
@@ -125,15 +153,19 @@ class CoarseCorrection {
   /// E x = coarse_, all components in one sweep over the factors.
   void solve();
 
-  void factorize(Eigen::MatrixXd E);
+  void factorize(const Couplings& E);
 
   const PointTable& table_;
+  RowShare* share_;
   CoarseSpace space_;
-  std::vector<CoarseSpace::Splines> splines_;  // of the particles
+  std::vector<CoarseSpace::Splines> splines_;  // of the particles; empty where they are made anew each time
   Eigen::MatrixXd affine_;
   Eigen::VectorXd scale_;
   Field coarse_, ordered_;  // values at the nodes, in their order and in that of the factors
-  std::vector<Field> parts_;  // of sums over the particles
+  std::vector<Index> part_nodes_;          // that the particles of each part of a sum (sum_part) reach, part after part
+  std::vector<std::size_t> part_offsets_;  // of each part in them
+  std::vector<std::vector<int>> part_places_;  // of each part that is summed here, and each node: where it is in part_nodes_, or −1
+  Field part_sums_;                            // beside part_nodes_
   Eigen::SimplicialLDLT<Factor> solver_;
 };
 

@@ -63,29 +63,48 @@ TACTOID_INLINE CoarseSpace::Splines CoarseSpace::at(const Vector3& X) const {
   return splines;
 }
 
-TACTOID_INLINE void CoarseCorrection::add(const Field& r, Field& z) {
-  // In parts that do not depend on the threads.
-  if (parts_.empty()) parts_.assign(16, Field(coarse_.size()));
-  const std::size_t size = (r.size() + parts_.size() - 1) / parts_.size();
-  parallel_for(parts_.size(), [&](std::size_t p) {
-    Field& part = parts_[p];
-    std::fill(part.begin(), part.end(), Vector4::Zero());
-    for (std::size_t i = p * size; i < std::min(r.size(), (p + 1) * size); ++i)
-      space_.for_each(splines_[i], [&](std::size_t node, double value) { part[node] += value * r[i]; });
+TACTOID_INLINE void CoarseCorrection::find_parts() {
+  std::vector<std::vector<int>> places(sum_parts, std::vector<int>(space_.size(), -1));
+  parallel_for(sum_parts, [&](std::size_t p) {
+    const auto [first, last] = sum_part(table_.particles, p);
+    for (std::size_t i = first; i < last; ++i) space_.for_each(splines(i), [&](std::size_t node, double) { places[p][node] = 0; });
   });
-  parallel_for(coarse_.size(), [&](std::size_t node) {
-    Vector4 sum = Vector4::Zero();
-    for (const Field& part : parts_) sum += part[node];
-    coarse_[node] = sum;
+  part_offsets_.assign(1, 0);
+  part_places_.resize(sum_parts);
+  for (std::size_t p = 0; p < sum_parts; ++p) {
+    for (Index node = 0; node < space_.size(); ++node)
+      if (places[p][node] == 0) {
+        places[p][node] = static_cast<int>(part_nodes_.size());
+        part_nodes_.push_back(node);
+      }
+    part_offsets_.push_back(part_nodes_.size());
+    if (share_ == nullptr || share_->sums(p)) part_places_[p] = std::move(places[p]);
+  }
+  part_sums_.resize(part_nodes_.size());
+}
+
+TACTOID_INLINE void CoarseCorrection::add(Field& r, Field& z) {
+  if (share_ != nullptr) share_->bring_to_parts(r);
+  parallel_for(sum_parts, [&](std::size_t p) {
+    std::fill(part_sums_.begin() + static_cast<std::ptrdiff_t>(part_offsets_[p]), part_sums_.begin() + static_cast<std::ptrdiff_t>(part_offsets_[p + 1]), Vector4::Zero());
+    if (part_places_[p].empty()) return;
+    const auto [first, last] = sum_part(table_.particles, p);
+    for (std::size_t i = first; i < last; ++i)
+      space_.for_each(splines(i), [&](std::size_t node, double value) { part_sums_[static_cast<std::size_t>(part_places_[p][node])] += value * r[i]; });
   });
+  if (share_ != nullptr) share_->combine({part_sums_[0].data(), 4 * part_sums_.size()});
+  std::fill(coarse_.begin(), coarse_.end(), Vector4::Zero());
+  for (std::size_t k = 0; k < part_nodes_.size(); ++k) coarse_[part_nodes_[k]] += part_sums_[k];
   take_off_affine();
   solve();
   take_off_affine();
-  parallel_for(z.size(), [&](std::size_t i) {
+  const auto correct = [&](std::size_t i) {
     Vector4 sum = z[i];
-    space_.for_each(splines_[i], [&](std::size_t node, double value) { sum += value * coarse_[node]; });
+    space_.for_each(splines(i), [&](std::size_t node, double value) { sum += value * coarse_[node]; });
     z[i] = sum;
-  });
+  };
+  const OwnParticles own(share_, z.size());
+  parallel_for(own.size(), [&](std::size_t k) { correct(own[k]); });
 }
 
 TACTOID_INLINE void CoarseCorrection::take_off_affine() {
@@ -118,17 +137,24 @@ TACTOID_INLINE void CoarseCorrection::solve() {
   for (Eigen::Index i = 0; i < n; ++i) coarse_[static_cast<std::size_t>(i)] = scale_[i] * x(order[i]);
 }
 
-TACTOID_INLINE void CoarseCorrection::factorize(Eigen::MatrixXd E) {
-  const double largest = E.diagonal().maxCoeff();
+TACTOID_INLINE void CoarseCorrection::factorize(const Couplings& E) {
+  const auto n = static_cast<Eigen::Index>(E.size());
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (const auto& [i, value] : E[static_cast<std::size_t>(j)])
+      if (i == j) diagonal[j] = value;
+  const double largest = diagonal.maxCoeff();
   // Splines that reach hardly any particle are left out.
-  scale_ = E.diagonal().unaryExpr([&](double d) { return d > 1e-2 * largest ? 1.0 / std::sqrt(d) : 0.0; });
+  scale_ = diagonal.unaryExpr([&](double d) { return d > 1e-2 * largest ? 1.0 / std::sqrt(d) : 0.0; });
   std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index j = 0; j < E.cols(); ++j)
-    for (Eigen::Index i = j; i < E.rows(); ++i) {
-      const double value = i == j ? 1.0 + regularization : scale_[i] * E(i, j) * scale_[j];
-      if (value != 0.0) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    entries.emplace_back(static_cast<int>(j), static_cast<int>(j), 1.0 + regularization);
+    for (const auto& [i, e] : E[static_cast<std::size_t>(j)]) {
+      const double value = scale_[i] * e * scale_[j];
+      if (i != j && value != 0.0) entries.emplace_back(i, static_cast<int>(j), value);
     }
-  Factor scaled(E.rows(), E.cols());
+  }
+  Factor scaled(n, n);
   scaled.setFromTriplets(entries.begin(), entries.end());
   solver_.compute(scaled);
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
 #include <tactoid/core/compiled.hpp>
+#include <tactoid/core/pages.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/quadrature/coarse_space.hpp>
 #include <tactoid/quadrature/coloring.hpp>
@@ -12,58 +14,52 @@
 
 namespace tactoid::detail {
 
-TACTOID_INLINE AffineResidual::AffineResidual(const PointTable& table, std::span<const double> weights)
-    : table_(table), pair_(table.pairs()), particle_(table.pairs()), constant_(table.points()) {
-  const int n = table.dimension + 1;
+TACTOID_INLINE AffineResidual::AffineResidual(const PointTable& table, std::vector<double> weights)
+    : table_(table), periodic_(table.period.any()), weights_(std::move(weights)), particle_(table.size()), rows_(table.points()) {
+  const auto n = static_cast<std::size_t>(table.dimension) + 1;
   parallel_for(table.points(), [&](std::size_t q) {
     const std::size_t begin = table.offsets[q], end = table.offsets[q + 1];
     double length = 0.0;
+    for (std::size_t e = begin; e < end; ++e) particle_[e] = table.entries[e].particle;
     for (std::size_t e = begin; e < end; ++e)
-      if (weights[e] > 0.0) length = std::max(length, offset(q, e).norm());
-    // L Lᵀ = Σ w p pᵀ, in plain loops: Eigen's factorisations cost every program seconds to compile. The factor of a direction
+      if (weights_[e] > 0.0) length = std::max(length, monomials(q, e).tail<3>().norm());
+    const double unit = length > 0.0 ? 1.0 / length : 1.0;  // of the offsets, until L is known
+    Row& row = rows_[q];
+    // C Cᵀ = Σ w p pᵀ and L = C⁻¹, in plain loops: Eigen's factorisations cost every program seconds to compile. The factor of a direction
     // in which the row has no extent is left out.
-    double L[4][4] = {};
-    Vector4 inverse = Vector4::Zero();  // of L's diagonal
+    double C[4][4] = {};
     for (std::size_t e = begin; e < end; ++e) {
-      const Vector4 p = monomials(q, e, length);
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j <= i; ++j) L[i][j] += weights[e] * p[i] * p[j];
+      Vector4 p = monomials(q, e);
+      p.tail<3>() *= unit;
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j <= i; ++j) C[i][j] += weights_[e] * p[static_cast<Eigen::Index>(i)] * p[static_cast<Eigen::Index>(j)];
     }
-    for (int j = 0; j < n; ++j) {
-      for (int i = j; i < n; ++i)
-        for (int k = 0; k < j; ++k) L[i][j] -= L[i][k] * L[j][k];
-      inverse[j] = L[j][j] > 0.0 ? 1.0 / std::sqrt(L[j][j]) : 0.0;
-      for (int i = j; i < n; ++i) L[i][j] *= inverse[j];
-    }
-    for (std::size_t e = begin; e < end; ++e) {
-      const Vector4 of = monomials(q, e, length);
-      Vector4 p = Vector4::Zero();
-      for (int i = 0; i < n; ++i) {
-        p[i] = of[i];
-        for (int k = 0; k < i; ++k) p[i] -= L[i][k] * p[k];
-        p[i] *= inverse[i];
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t i = j; i < n; ++i)
+        for (std::size_t k = 0; k < j; ++k) C[i][j] -= C[i][k] * C[j][k];
+      const double inverse = C[j][j] > 0.0 ? 1.0 / std::sqrt(C[j][j]) : 0.0;
+      for (std::size_t i = j; i < n; ++i) C[i][j] *= inverse;
+      row.factor(j, j) = inverse;
+      for (std::size_t k = 0; k < j; ++k) {
+        double sum = 0.0;
+        for (std::size_t l = k; l < j; ++l) sum += C[j][l] * row.factor(l, k);
+        row.factor(j, k) = -inverse * sum;
       }
-      constant_[q] = p[0];
-      pair_[e] = {p[1], p[2], p[3], weights[e]};
-      particle_[e] = table.entries[e].particle;
     }
+    for (std::size_t i = 1; i < n; ++i)
+      for (std::size_t k = 1; k <= i; ++k) row.factor(i, k) *= unit;
   });
 }
 
-TACTOID_INLINE void AffineResidual::apply(const Field& mu, Field& result) const {
-  std::fill(result.begin(), result.end(), Vector4::Zero());
+TACTOID_INLINE void AffineResidual::apply(const Field& mu, Field& result, const RowShare* share) const {
+  if (share == nullptr) std::fill(result.begin(), result.end(), Vector4::Zero());
+  else
+    for (const Index i : share->here) result[i].setZero();
   for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t) {
     for (std::size_t q = chunk.begin; q < chunk.end; ++q)
       row_residual(q, table_.volume[q] * table_.volume[q], mu,
-                   [&](std::size_t e, const Vector4& r) { result[particle_[e]] += r; });
+                   [&](std::size_t, Index i, const Quad& r) { quad(result[i].data()) += r; });
   });
-}
-
-TACTOID_INLINE Vector3 AffineResidual::offset(std::size_t q, std::size_t e) const {
-  Vector3 d = table_.particle_position[table_.entries[e].particle].head<3>() - table_.position[q];
-  for (int k = 0; k < 3; ++k)
-    if (table_.period[k] > 0.0) d[k] -= table_.period[k] * std::round(d[k] / table_.period[k]);
-  return d;
 }
 
 }  // namespace tactoid::detail
@@ -107,9 +103,13 @@ void fit_boundary(const PointTable& table, const std::vector<Point<D>>& normals,
     boundary[i].template head<D>() += normals[i].norm() * change.transpose() * monomials(i);
 }
 
-TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::span<const double> weights,
-                                                 const Field& boundary, double tolerance, int max_iterations) {
-  const detail::AffineResidual S(table, weights);
+TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::vector<double> weights,
+                                                 const Field& boundary, double tolerance, int max_iterations, SharedRows* shared) {
+  for (std::size_t q = 0; q < table.points(); ++q)
+    if ((table.offsets[q + 1] - table.offsets[q]) % 2 != 0)
+      throw GeometryError(fmt::format("make_consistent: the row of point {} has an odd number of entries, {}; lay_out_rows makes them even.", q, table.offsets[q + 1] - table.offsets[q]));
+  RowShare* const share = shared != nullptr ? &shared->share : nullptr;
+  const detail::AffineResidual S(table, std::move(weights));
   const std::size_t n = table.particles;
   Field residual = boundary;
   std::vector<double> diagonal(n, 0.0), gross(n, 0.0);  // gross: sums of the sizes of what Σ V G adds
@@ -123,23 +123,39 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::span<co
       diagonal[entry.particle] += S.diagonal(q, e);
       size += g.cwiseAbs2();
     }
-  Field mu(n, Vector4::Zero()), z(n), direction(n), image(n);
-  const Vector4 initial = detail::componentwise_dot(residual, residual);
+  ParticleSums sum(share, n);
+  const auto dot = [&](const Field& a, const Field& b) { return sum([&](std::size_t i) -> Vector4 { return a[i].cwiseProduct(b[i]); }); };
+  Field mu(n, Vector4::Zero()), z(mu), direction(mu), image(mu);
+  if (share != nullptr)
+    for (Field* field : {&mu, &z, &direction, &image, &residual}) give_back_unused(*field, share->here);
+  const Vector4 initial = dot(residual, residual);
   // Round-off of the sums b and Σ V G themselves: below it there is nothing to correct.
   double floor = 0.0;
-  for (std::size_t i = 0; i < n; ++i) floor = std::max(floor, std::max(gross[i], boundary[i].norm()));
+  for (std::size_t i = 0; i < n; ++i)
+    if (share == nullptr || share->particle_owner[i] == share->rank()) floor = std::max(floor, std::max(gross[i], boundary[i].norm()));
+  if (share != nullptr) floor = share->largest(floor);
   floor = 1e-30 * floor * floor * static_cast<double>(n);
   std::optional<detail::CoarseCorrection> coarse;
-  if (n >= detail::particles_for_coarse_space) coarse.emplace(table, S);
+  if (n >= detail::particles_for_coarse_space) {
+    const std::size_t step = detail::sampling_step(table.points());
+    if (shared == nullptr) {
+      coarse.emplace(table, detail::SampledRows<detail::AffineResidual>{S, table, step, static_cast<double>(step)}, nullptr);
+    } else {
+      const detail::AffineResidual of_samples(shared->samples, std::move(shared->weights));
+      coarse.emplace(table, detail::SampledRows<detail::AffineResidual>{of_samples, shared->samples, 1, static_cast<double>(step)}, share);
+      shared->samples = {};
+    }
+  }
   if (coarse && !coarse->usable()) coarse.reset();
-  const Field first_residual = coarse ? residual : Field();
+  Field first_residual = coarse ? residual : Field();
+  if (share != nullptr) give_back_unused(first_residual, share->own);
   auto precondition = [&] {
-    parallel_for(n, [&](std::size_t i) { z[i] = diagonal[i] > 0.0 ? Vector4(residual[i] / diagonal[i]) : Vector4::Zero(); });
+    sum.for_each_own([&](std::size_t i) { z[i] = diagonal[i] > 0.0 ? Vector4(residual[i] / diagonal[i]) : Vector4::Zero(); });
     if (coarse) coarse->add(residual, z);
   };
   precondition();
-  direction = z;
-  Vector4 rho = detail::componentwise_dot(residual, z);
+  sum.for_each_own([&](std::size_t i) { direction[i] = z[i]; });
+  Vector4 rho = dot(residual, z);
   Vector4 norm = initial;
   ConsistencyReport report;
   double least = initial.sum();
@@ -151,22 +167,23 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::span<co
           "The integration-consistent correction of the gradients did not converge: residual {:.1e} after {} iterations; "
           "the likely cause is a cloud whose facets do not close its cells.",
           std::sqrt((norm.array() / initial.array().max(floor)).maxCoeff()), report.iterations));
-    S.apply(direction, image);
-    const Vector4 curvature = detail::componentwise_dot(direction, image);
+    if (share != nullptr) share->exchange(direction);
+    S.apply(direction, image, share);
+    const Vector4 curvature = dot(direction, image);
     Vector4 alpha = Vector4::Zero(), beta = Vector4::Zero();
     for (int k = 0; k < 3; ++k)
       if (active(k) && curvature[k] > 0.0) alpha[k] = rho[k] / curvature[k];
-    parallel_for(n, [&](std::size_t i) {
+    sum.for_each_own([&](std::size_t i) {
       mu[i] += alpha.cwiseProduct(direction[i]);
       residual[i] -= alpha.cwiseProduct(image[i]);
     });
     precondition();
-    const Vector4 next = detail::componentwise_dot(residual, z);
+    const Vector4 next = dot(residual, z);
     for (int k = 0; k < 3; ++k)
       if (rho[k] > 0.0) beta[k] = next[k] / rho[k];
-    parallel_for(n, [&](std::size_t i) { direction[i] = z[i] + beta.cwiseProduct(direction[i]); });
+    sum.for_each_own([&](std::size_t i) { direction[i] = z[i] + beta.cwiseProduct(direction[i]); });
     rho = next;
-    norm = detail::componentwise_dot(residual, residual);
+    norm = dot(residual, residual);
     ++report.iterations;
     // A body in pieces has more affine functions than are taken out, and their round-off may grow: then begin again without.
     if (norm.sum() < 0.25 * least) {
@@ -175,18 +192,21 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::span<co
     } else if (coarse && report.iterations > last_progress + 100) {
       coarse.reset();
       std::fill(mu.begin(), mu.end(), Vector4::Zero());
-      residual = first_residual;
+      sum.for_each_own([&](std::size_t i) { residual[i] = first_residual[i]; });
       norm = initial;
       precondition();
-      direction = z;
-      rho = detail::componentwise_dot(residual, z);
+      sum.for_each_own([&](std::size_t i) { direction[i] = z[i]; });
+      rho = dot(residual, z);
     }
   }
+  if (share != nullptr) share->exchange(mu);
   double change = 0.0;
   for (std::size_t q = 0; q < table.points(); ++q)
-    S.row_residual(q, table.volume[q], mu, [&](std::size_t e, const Vector4& d) {
-      for (int k = 0; k < 3; ++k) table.entries[e].gradient[k] += d[k];
-      change += d.squaredNorm();
+    S.row_residual(q, table.volume[q], mu, [&](std::size_t e, Index, const Quad& d) {
+      for (int k = 0; k < 3; ++k) {
+        table.entries[e].gradient[k] += d[k];
+        change += d[k] * d[k];
+      }
     });
   report.residual = std::sqrt(norm.head<3>().sum() / std::max(initial.head<3>().sum(), floor));
   report.relative_size = std::sqrt(change / size.sum());

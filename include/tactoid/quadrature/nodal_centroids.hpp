@@ -16,6 +16,7 @@
 #include <tactoid/neighbors/neighbor_table.hpp>
 #include <tactoid/quadrature/coloring.hpp>
 #include <tactoid/quadrature/consistency.hpp>
+#include <tactoid/quadrature/divided_build.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
 #include <tactoid/quadrature/rows.hpp>
 
@@ -62,16 +63,16 @@ struct NodalCentroids {
     return {fluid_modulus, fluid_modulus > 0.0 ? fluid_viscosity / fluid_modulus : 0.0};
   }
 
-  /// The table of a cloud. Throws ParameterError; GeometryError where a moment matrix is singular or beyond
+  /// The table of a cloud; with `divided`, of which each rank makes its own rows. Throws ParameterError; GeometryError where a moment matrix is singular or beyond
   /// condition_limit, naming point and neighbours; ComputationError where the columns cannot be made consistent.
   template <Kernel K>
-  [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel) const {
+  [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel, DividedBuild* divided = nullptr) const {
     validate();
     std::vector<NodalCell<K::dimension>> cells = nodal_cells(cloud);
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
       return std::pair(a.region, a.particle) < std::pair(b.region, b.particle);
     });
-    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, longest_edges(cloud), false);
+    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, longest_edges(cloud), false, divided);
   }
 
   /// The table of a cloud that has moved, with the points and the volumes that moved with it: `cells`, sorted by region. Only
@@ -82,7 +83,7 @@ struct NodalCentroids {
   [[nodiscard]] PointTable build_moved(const PointCloud<K::dimension>& cloud, const K& kernel,
                                        const std::vector<NodalCell<K::dimension>>& cells) const {
     if (!cloud.period.isZero()) throw ParameterError("NodalCentroids.build_moved: a periodic cloud keeps its reference.");
-    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, neighbor_spacings(cloud), true);
+    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, neighbor_spacings(cloud), true, nullptr);
   }
 
  private:
@@ -110,7 +111,16 @@ struct NodalCentroids {
 
   template <int D>
   [[nodiscard]] PointTable table_of(const PointCloud<D>& cloud, double support, const RowsOf<D>& rows_of_points,
-                                    const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved) const;
+                                    const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved, DividedBuild* divided) const;
+
+  /// Gradients, shares of the mass and weights of the window (beside the entries) for the rows of a table that is laid out.
+  template <int D>
+  void fill_rows(PointTable& table, std::vector<double>& weights, const PointCloud<D>& cloud, const std::vector<double>& supports, const RowsOf<D>& rows_of_points,
+                 const RowsToMake& rows) const;
+  /// The rows that stand for all in the consistency of a divided table.
+  template <int D>
+  [[nodiscard]] PointTable sampled_rows(const PointTable& table, std::vector<double>& weights, const PointCloud<D>& cloud, const std::vector<double>& supports,
+                                        const RowsOf<D>& rows_of_points, const DividedBuild::Find& find) const;
 
   /// What is left of ∮ N_I n dA for the gradients in a meridian section, where div(φ e_R) = ∂φ/∂R + φ/R:
   ///   Σ_q V_q G_qI = b_I − Σ_q V_q φ_I(X_q)/R_q e_R.

@@ -17,47 +17,75 @@ TACTOID_INLINE void NodalCentroids::validate() const {
 }
 
 template <int D>
+void NodalCentroids::fill_rows(PointTable& table, std::vector<double>& weights, const PointCloud<D>& cloud, const std::vector<double>& supports, const RowsOf<D>& rows_of_points,
+                               const RowsToMake& rows) const {
+  weights.assign(table.size(), 0.0);
+  table.mass_shares.assign(table.size(), 0.0);
+  parallel_for(rows.points.size(), [&](std::size_t k) {
+    const std::size_t q = rows.points[k];
+    const Point<D> centroid = table.position[q].template head<D>();
+    std::vector<KernelNeighbor<D>> near;
+    RowOfPoint<D> of_kernel;
+    const auto row = rows.neighbors.row(k);
+    for (Index i : row) near.push_back({cloud.difference(centroid, cloud.positions[i]), supports[i], 1.0});
+    rows_of_points(near, of_kernel);
+    check_condition(q, table.position[q], row.size(), of_kernel.condition, condition_limit);
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      const std::size_t e = table.offsets[q] + j;
+      for (int d = 0; d < D; ++d) table.entries[e].gradient[d] = of_kernel.gradient[j][d];
+      table.mass_shares[e] = of_kernel.mass_share[j];
+      weights[e] = of_kernel.weight[j];
+    }
+  });
+}
+
+template <int D>
 PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, const RowsOf<D>& rows_of_points,
-                                    const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved) const {
-  std::vector<Point<D>> centroids(cells.size());
-  for (std::size_t q = 0; q < cells.size(); ++q) centroids[q] = cells[q].centroid;
+                                    const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved, DividedBuild* divided) const {
   std::vector<double> supports = spacing;
   for (double& radius : supports) radius *= support;
 
   PointTable table = empty_table(cloud);
-  std::vector<double> weights;
-  const NeighborTable neighbors = neighbor_table(cloud, centroids, supports);
-  lay_out_rows(table, neighbors);
-  weights.assign(table.pairs(), 0.0);
-  table.mass_shares.assign(table.pairs(), 0.0);
   for (const NodalCell<D>& cell : cells) {
     table.volume.push_back(cell.volume);
     table.region.push_back(cell.region);
     table.owner.push_back(cell.particle);
     table.position.push_back(pad(cell.centroid).template head<3>());
   }
-  parallel_for(cells.size(), [&](std::size_t q) {
-    std::vector<KernelNeighbor<D>> near;
-    RowOfPoint<D> of_kernel;
-    const auto row = neighbors.row(q);
-    for (Index i : row) near.push_back({cloud.difference(centroids[q], cloud.positions[i]), supports[i], 1.0});
-    rows_of_points(near, of_kernel);
-    check_condition(q, table.position[q], row.size(), of_kernel.condition, condition_limit);
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const std::size_t e = table.offsets[q] + k;
-      for (int d = 0; d < D; ++d) table.entries[e].gradient[d] = of_kernel.gradient[k][d];
-      table.mass_shares[e] = of_kernel.mass_share[k];
-      weights[e] = of_kernel.weight[k];
-    }
-  });
-  color_chunks(table, points_per_chunk);
+  const auto find = [&](std::span<const Index> points) {
+    std::vector<Point<D>> centroids;
+    for (const Index q : points) centroids.push_back(cells[q].centroid);
+    return neighbor_table(cloud, centroids, supports);
+  };
+  std::vector<double> weights;
+  if (divided == nullptr) {
+    RowsToMake rows;
+    rows.points.resize(cells.size());
+    std::iota(rows.points.begin(), rows.points.end(), Index{0});
+    rows.neighbors = find(rows.points);
+    lay_out_rows(table, rows.neighbors);
+    fill_rows(table, weights, cloud, supports, rows_of_points, rows);
+    color_chunks(table, points_per_chunk);
+  } else {
+    cut_chunks(table, points_per_chunk);
+    const RowsToMake rows = divided->divide(table, supports, find);
+    lay_out_rows(table, rows.neighbors, rows.points, table.points());
+    divided->together([&] { fill_rows(table, weights, cloud, supports, rows_of_points, rows); });
+    divided->share()->follow_rows(table);
+  }
   if (consistency_tolerance > 0.0) {
     const std::vector<Point<D>> normals = boundary_normal_integrals(cloud);
     Field boundary;
     for (const Point<D>& b : normals) boundary.push_back(pad(b));
     if (cloud.axisymmetric) take_off_hoops(table, boundary);
     if (moved) fit_boundary(table, normals, boundary);
-    make_consistent(table, weights, boundary, consistency_tolerance);
+    if (divided == nullptr) {
+      make_consistent(table, std::move(weights), boundary, consistency_tolerance);
+    } else {
+      SharedRows shared{*divided->share(), {}, {}};
+      if (table.particles >= detail::particles_for_coarse_space) shared.samples = sampled_rows(table, shared.weights, cloud, supports, rows_of_points, find);
+      make_consistent(table, std::move(weights), boundary, consistency_tolerance, 20000, &shared);
+    }
   }
   if (cloud.axisymmetric)
     for (std::size_t q = 0; q < table.points(); ++q)
@@ -65,6 +93,25 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
         table.entries[e].gradient[2] = table.mass_shares[e] / table.position[q][0];
   weigh_stabilization(table, cloud, spacing);
   return table;
+}
+
+template <int D>
+PointTable NodalCentroids::sampled_rows(const PointTable& table, std::vector<double>& weights, const PointCloud<D>& cloud, const std::vector<double>& supports,
+                                        const RowsOf<D>& rows_of_points, const DividedBuild::Find& find) const {
+  PointTable samples = empty_table(cloud);
+  std::vector<Index> points;
+  for (std::size_t q = 0; q < table.points(); q += detail::sampling_step(table.points())) {
+    points.push_back(static_cast<Index>(q));
+    samples.volume.push_back(table.volume[q]);
+    samples.position.push_back(table.position[q]);
+  }
+  RowsToMake rows{{}, find(points)};
+  rows.points.resize(points.size());
+  std::iota(rows.points.begin(), rows.points.end(), Index{0});
+  lay_out_rows(samples, rows.neighbors);
+  fill_rows(samples, weights, cloud, supports, rows_of_points, rows);
+  samples.mass_shares = std::vector<double>();
+  return samples;
 }
 
 template <int D>
@@ -116,10 +163,10 @@ void NodalCentroids::weigh_stabilization(PointTable& table, const PointCloud<D>&
 #if defined(TACTOID_COMPILED)
 namespace tactoid {
 template PointTable NodalCentroids::table_of<1>(const PointCloud<1>&, double, const RowsOf<1>&, const std::vector<NodalCell<1>>&,
-                                                const std::vector<double>&, bool) const;
+                                                const std::vector<double>&, bool, DividedBuild*) const;
 template PointTable NodalCentroids::table_of<2>(const PointCloud<2>&, double, const RowsOf<2>&, const std::vector<NodalCell<2>>&,
-                                                const std::vector<double>&, bool) const;
+                                                const std::vector<double>&, bool, DividedBuild*) const;
 template PointTable NodalCentroids::table_of<3>(const PointCloud<3>&, double, const RowsOf<3>&, const std::vector<NodalCell<3>>&,
-                                                const std::vector<double>&, bool) const;
+                                                const std::vector<double>&, bool, DividedBuild*) const;
 }  // namespace tactoid
 #endif

@@ -17,6 +17,10 @@ TACTOID_INLINE void PointTable::use_single_precision() {
     return TableEntry(rounded.back());
   };
   for (std::size_t q = 0; q < points(); ++q) {
+    if (offsets[q] == offsets[q + 1]) {  // other processes have the row
+      rows.push_back(rounded.size());
+      continue;
+    }
     PackedVector lost;
     for (std::size_t e = offsets[q]; e < offsets[q + 1]; ++e) {
       const TableEntry& exact = entries[e];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <tactoid/core/errors.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
@@ -18,9 +19,14 @@ void check_condition(std::size_t point, const Vector3& position, std::size_t nei
 template <int D>
 [[nodiscard]] PointTable empty_table(const PointCloud<D>& cloud);
 
-/// Entries for the given neighbours, each row padded to an even length by its first particle with zero gradient:
-/// the hot loop takes two pairs at a time.
+/// Entries of a row with so many particles: the hot loop takes two pairs at a time.
+[[nodiscard]] inline std::size_t padded_row(std::size_t particles) { return (particles + 1) / 2 * 2; }
+
+/// Entries for the given neighbours, each row padded to an even length by its first particle with zero gradient.
 void lay_out_rows(PointTable& table, const NeighborTable& neighbors);
+
+/// The same where row k of the neighbours belongs to point points[k], ascending, of `count` ones: the rows of the others are empty.
+void lay_out_rows(PointTable& table, const NeighborTable& neighbors, std::span<const Index> points, std::size_t count);
 
 /// The padding at the end of a row repeats its first particle.
 [[nodiscard]] inline bool is_padding(const PointTable& table, std::size_t q, std::size_t e) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <numeric>
+
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/quadrature/rows.hpp>
 
@@ -28,18 +30,20 @@ PointTable empty_table(const PointCloud<D>& cloud) {
 }
 
 TACTOID_INLINE void lay_out_rows(PointTable& table, const NeighborTable& neighbors) {
-  const std::size_t points = neighbors.offsets.size() - 1;
-  table.offsets.assign(1, 0);
-  table.offsets.reserve(points + 1);
-  for (std::size_t q = 0; q < points; ++q)
-    table.offsets.push_back(table.offsets.back() + (neighbors.row(q).size() + 1) / 2 * 2);
+  std::vector<Index> points(neighbors.rows());
+  std::iota(points.begin(), points.end(), Index{0});
+  lay_out_rows(table, neighbors, points, points.size());
+}
+
+TACTOID_INLINE void lay_out_rows(PointTable& table, const NeighborTable& neighbors, std::span<const Index> points, std::size_t count) {
+  table.offsets.assign(count + 1, 0);
+  for (std::size_t k = 0; k < points.size(); ++k) table.offsets[points[k] + 1] = padded_row(neighbors.row(k).size());
+  std::partial_sum(table.offsets.begin(), table.offsets.end(), table.offsets.begin());
   table.entries.assign(table.offsets.back(), TableEntry{});
-  for (std::size_t q = 0; q < points; ++q) {
-    const auto row = neighbors.row(q);
-    for (std::size_t e = table.offsets[q]; e < table.offsets[q + 1]; ++e) {
-      const std::size_t k = e - table.offsets[q];
-      if (!row.empty()) table.entries[e].particle = row[k < row.size() ? k : 0];
-    }
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto row = neighbors.row(k);
+    for (std::size_t e = table.offsets[points[k]], i = 0; e < table.offsets[points[k] + 1]; ++e, ++i)
+      if (!row.empty()) table.entries[e].particle = row[i < row.size() ? i : 0];
   }
 }
 

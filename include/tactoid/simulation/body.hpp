@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/pages.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/director/all.hpp>
 #include <tactoid/geometry/measures.hpp>
@@ -23,6 +24,7 @@
 #include <tactoid/kernel/kernel.hpp>
 #include <tactoid/kinematics/kinematics.hpp>
 #include <tactoid/quadrature/coloring.hpp>
+#include <tactoid/quadrature/divided_build.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
 #include <tactoid/quadrature/stored.hpp>
 #include <tactoid/quadrature/particle_values.hpp>
@@ -55,6 +57,9 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   static_assert(Quadrature<QuadratureType, KernelType>, "The fourth argument of a Body is a Quadrature for its kernel.");
   static constexpr int dimension = KernelType::dimension;                      ///< 1, 2 or 3, that of the kernel and the cloud
   static constexpr bool has_director = !std::is_same_v<Director, NoDirector>;  ///< a director field is carried along
+  /// What a point of a region with the law or field of laws M costs in a step beside its pairs, in pairs.
+  template <class M>
+  static constexpr double cost_of_point = (has_director ? 32.0 : 16.0) * (is_graded<M> ? 4.0 : 1.0);
   /// What the table keeps of a pair: in single precision where the quadrature says so (stored_as).
   using Entry = StoredEntry<QuadratureType>;
   static_assert(has_director || !(uses_director<LawOf<Ms>> || ...),
@@ -73,10 +78,10 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     tactoid::validate(cloud_);
     kernel_.validate();
     director_law_.validate();
-    table_ = quadrature_.build(cloud_, kernel_);
+    build_table(materials);
     if (has_director && !table_.value_based())
       throw ParameterError("Body \"" + name_ + "\": a director field needs a value-based quadrature, such as NodalCentroids.");
-    if (cloud_.axisymmetric && std::all_of(table_.entries.begin(), table_.entries.end(), [](const TableEntry& e) { return e.gradient[2] == 0.0; }))
+    if (cloud_.axisymmetric && !table_.entries.empty() && std::all_of(table_.entries.begin(), table_.entries.end(), [](const TableEntry& e) { return e.gradient[2] == 0.0; }))
       throw ParameterError("Body \"" + name_ + "\": its quadrature does not support axisymmetric clouds: TableEntry::gradient[2] must be the shape "
                            "function over R there.");
     match_regions(materials, std::index_sequence_for<Ms...>{});
@@ -351,11 +356,15 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   }
 
   // --- shared by several processes ---------------------------------------------------------------------------
+  /// How the rows of the table are divided among the processes that have made it together; null where this one has all of them.
+  [[nodiscard]] BodyShare* share() const { return share_.get(); }
   /// Leaves to other processes what is not in this share of the body. Everything must be evaluated before.
   void share_with(std::shared_ptr<BodyShare> share) {
     share_ = std::move(share);
     share_->drop_rows(table_);
   }
+  /// Gives back the memory of the packed motion of particles that are not in this share of the body.
+  void give_back_motion() { give_back_unused(motion_, share_->local); }
   /// Makes the rates of the director known at all points. Collective, as Decomposition's functions; nothing in a body that is not shared.
   void complete_rates() {
     if constexpr (has_director)
@@ -432,6 +441,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     found_ = {};
     point_scale_ = wave_numbers();
     if constexpr (std::is_same_v<Entry, SingleTableEntry>) table_.use_single_precision();
+    if (share_) table_.pairs_elsewhere = share_->count_pairs(table_) - table_.size();
     longest_row_ = 0;
     for (Index q = 0; q < table_.points(); ++q) {
       const std::size_t row = table_.row(q).size(), bonds = table_.bonds(q).size();
@@ -611,6 +621,24 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     }
   }
 
+  /// Every rank makes all rows, or its own where the session says so and the quadrature can.
+  void build_table(const Materials<Ms...>& materials) {
+    if constexpr (requires(DividedBuild* divided) { quadrature_.build(cloud_, kernel_, divided); })
+      if (Ranks* ranks = Ranks::current; ranks != nullptr && ranks->size() > 1 && ranks->set_up == SetUp::divided) {
+        std::vector<double> costs(cloud_.regions.size(), 0.0);
+        for (std::size_t r = 0; r < costs.size(); ++r)
+          materials.for_each([&](std::size_t, const auto& region) {
+            if (region.name == cloud_.regions[r]) costs[r] = cost_of_point<std::decay_t<decltype(region.material)>>;
+          });
+        DividedBuild divided(*ranks, std::move(costs));
+        table_ = quadrature_.build(cloud_, kernel_, &divided);
+        share_ = std::dynamic_pointer_cast<BodyShare>(divided.share());
+        if (share_ == nullptr) throw ParameterError("Body \"" + name_ + "\": Ranks::divide must give a BodyShare.");
+        return;
+      }
+    table_ = quadrature_.build(cloud_, kernel_);
+  }
+
   template <class F>
   void visit(Index region, const F& f) {
     std::apply([&](auto&... law) { Index r = 0; ((r++ == region ? f(law) : void()), ...); }, laws_);
@@ -661,6 +689,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
         share(volumes_, table_.point_values, q, point_volume(q));
       }
     });
+    if (share_) share_->complete(masses_);
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (!(masses_[i] > 0.0))
         throw GeometryError(fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.",

@@ -9,25 +9,19 @@
 #include <tactoid/core/ranks.hpp>
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/quadrature/point_table.hpp>
+#include <tactoid/quadrature/row_share.hpp>
 
 namespace tactoid {
 
-/// The part of one body that this rank computes. Each chunk of points belongs to one rank, and each particle too. Numbers of
-/// particles and points stay those of the whole body.
+/// The part of one body that this rank computes.
 ///
 /// In the order of one process a rank evaluates its own chunks, and beyond them every row that touches one of its particles: so forces at its
 /// particles are complete, and no force is exchanged. In the order of the ranks it evaluates its own chunks alone; what they do to
 /// particles of other ranks is taken there by return_forces().
-class BodyShare {
+class BodyShare : public RowShare {
  public:
-  BodyShare() = default;
-  BodyShare(const BodyShare&) = delete;
-  BodyShare& operator=(const BodyShare&) = delete;
-  virtual ~BodyShare() = default;
-
   SumOrder order = SumOrder::of_one_process;  ///< of what is added up
-  std::vector<char> evaluated;  ///< per point: 1 where this rank evaluates the row
-  std::vector<Index> local;     ///< particles that this rank owns, that its rows touch, or that are known to all; ascending
+  std::vector<Index> local;  ///< particles that this rank owns, that its rows touch, or that are known to all; ascending; all of them while the body is set up
 
   ///@{
   /// In the order of the ranks: particles of other ranks that rows of this one touch; points that are evaluated here, and the particles
@@ -51,8 +45,9 @@ class BodyShare {
 
 /// A body as it is handed over to be divided. What it refers to must outlive the decomposition.
 struct SharedBody {
-  const PointTable* table = nullptr;       ///< with all its rows
-  std::vector<double> region_cost;         ///< of a point of each region beside its pairs, in pairs
+  const PointTable* table = nullptr;       ///< with all its rows, or with those that this rank has made
+  const RowShare* made = nullptr;          ///< where each rank has made its own rows: how the table was divided; needed only while bodies are being divided
+  std::vector<double> region_cost;         ///< of a point of each region of the table beside its pairs, in pairs
   std::vector<char> known_to_all;          ///< per particle: 1 where every rank must know its motion in every step
   bool keep_rows = false;                  ///< no rank drops rows
   std::vector<Field*> motion;              ///< what the evaluation of a row reads of its particles: u, v, h

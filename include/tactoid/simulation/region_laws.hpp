@@ -20,6 +20,7 @@ using LoopLanes = Lanes<8>;
 /// point to point, so it is stored per point and evaluated one point at a time.
 template <class M>
 struct RegionLaw {
+  using Material = M;                                            ///< as it was given to the body
   static constexpr bool graded = is_graded<M>;                   ///< the law depends on the position
   using Law = LawOf<M>;                                          ///< of one point
   using Scalar = std::conditional_t<graded, double, LoopLanes>;  ///< on which the law is evaluated

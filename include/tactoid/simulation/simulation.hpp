@@ -18,6 +18,7 @@
 #include <tactoid/boundary/prescribed_motion.hpp>
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/pages.hpp>
 #include <tactoid/core/parallel.hpp>
 #include <tactoid/core/ranks.hpp>
 #include <tactoid/core/state.hpp>
@@ -70,6 +71,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         integrator_(std::move(integrator)) {
     static_assert(Integrator<I, Simulation>, "The last argument of a Simulation is an Integrator.");
     for_each_body([&](auto& body, std::size_t b) {
+      if (synchronous<I> && body.share() != nullptr)
+        throw ParameterError("Body \"" + body.name() + "\": each process has made its own rows of it (SetUp::divided), and implicit steps need all rows; choose SetUp::whole, or explicit steps.");
+      if (body.share() != nullptr && (Ranks::current == nullptr || Ranks::current->size() == 1))
+        throw ParameterError("Body \"" + body.name() + "\": several processes have made its rows (SetUp::divided), and their session is over.");
       body.velocity_lag = velocity_lag;
       fields_[b].prepare(body);
       if (subcycling()) pace_[b].prepare(body.size());
@@ -102,6 +107,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     ledger_.initial = ledger_.total();
     integrator_.initialize(*this);
     if (Ranks::current != nullptr && Ranks::current->size() > 1) decompose(*Ranks::current);
+    give_back_released();
   }
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -287,7 +293,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       if constexpr (subcycled<I>)
         if (subcycling()) pace_[b].begin_step(body, body_steps_[b], time_step, last_step_);
-      previous_velocity_[b].resize(body.size(), Vector4::Zero());
+      make_room(previous_velocity_[b], body);
       body.for_each_particle([&](std::size_t i) {
         previous_velocity_[b][i] = body.velocity[i];
         body.velocity[i] += (time_step / body.masses()[i]) * body.force[i];
@@ -299,7 +305,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// was there before is kept, in case that evaluate() breaks down.
   void drift(double time_step) {
     for_each_body([&](auto& body, std::size_t b) {
-      previous_[b].resize(body.size(), Vector4::Zero());
+      make_room(previous_[b], body);
       body.for_each_particle([&](std::size_t i) {
         previous_[b][i] = body.displacement[i];
         body.displacement[i] += time_step * body.velocity[i];
@@ -502,7 +508,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Forces and energies at the present state; histories advanced by `time_step` wait for being accepted.
   StepEnergies forces(double contact_time, double time, double time_step) {
     StepEnergies energies;
-    incomplete_ = true;
+    if (!std::exchange(incomplete_, true) && decomposition_) give_back_elsewhere();
     for_each_body([&](auto& body, std::size_t b) { fields_[b].refresh(body, velocity_lag * time_step); });
     term_rates_.fill(0.0);
     for_each_contact([&](auto& between, std::size_t) {
@@ -692,12 +698,34 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       body.share_with(decomposition_->share(b));
       fields_[b].ranks = &ranks;
+      terms_.resize(std::max(terms_.size(), body.size()));
     });
+    give_back_elsewhere();
+  }
+  /// Memory of what moves at particles of which this process needs nothing: complete() fills it in where somebody asks. Implicit steps know the state of all particles.
+  void give_back_elsewhere() {
+    if constexpr (synchronous<I>) return;
+    for_each_body([&](auto& body, std::size_t b) {
+      const std::vector<Index>& local = body.share()->local;
+      for (Field* field : {&body.displacement, &body.velocity, &body.force, &body.director, &body.director_flux, &fields_[b].position, &fields_[b].velocity, &fields_[b].force,
+                           &previous_[b], &previous_velocity_[b]})
+        give_back_unused(*field, local);
+      body.give_back_motion();
+      give_back_unused(terms_, local);
+    });
+  }
+  /// For values at the particles of this process.
+  template <class Body>
+  static void make_room(Field& field, const Body& body) {
+    if (field.size() == body.size()) return;
+    field.resize(body.size(), Vector4::Zero());
+    if (body.share() != nullptr) give_back_unused(field, body.share()->local);
   }
   template <class Body>
   [[nodiscard]] SharedBody shared_body(Body& body, BodyFields& fields, std::size_t b) {
     SharedBody part;
     part.table = &body.table();
+    part.made = body.share();
     part.keep_rows = synchronous<I> || !body.table().value_based();
     part.motion = {&body.displacement, &body.velocity};
     if constexpr (Body::has_director) part.motion.push_back(&body.director);
@@ -706,10 +734,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     part.whole = part.known;
     part.whole.insert(part.whole.end(), {&fields.position, &fields.velocity});
     if constexpr (Body::has_director) part.whole.push_back(&body.director_flux);
-    body.for_each_region([&](const auto& region, Index) {
-      const double one_by_one = std::decay_t<decltype(region)>::graded ? 4.0 : 1.0;
-      part.region_cost.push_back((Body::has_director ? 32.0 : 16.0) * one_by_one);
-    });
+    body.for_each_region([&](const auto& region, Index) { part.region_cost.push_back(Body::template cost_of_point<typename std::decay_t<decltype(region)>::Material>); });
     // Interpolated values, and conditions on them, take in the unknowns around.
     bool facets = false, all = !body.particle_values().identity();
     const auto note = [&](std::size_t of, Reads reads) {
@@ -751,7 +776,6 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   template <class Body, class Term>
   [[nodiscard]] double sum_over_particles(std::size_t b, const Body& body, const Term& term) {
     if (!decomposition_) return parallel_sum(body.size(), term);
-    terms_.resize(std::max(terms_.size(), body.size()));
     body.for_each_particle([&](std::size_t i) { terms_[i] = term(i); });
     return decomposition_->sum(b, terms_);
   }

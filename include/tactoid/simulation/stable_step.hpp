@@ -93,29 +93,33 @@ class StableStep {
     return body.region_wave_numbers();
   }
 
-  /// Sets y = K x.
-  using Multiply = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>;
+  /// The operator of an eigenvalue problem K x = λ M x on so many numbers of each particle, of a body that one process has or several.
+  struct Operator {
+    std::size_t per_particle = 1;
+    const std::vector<double>& masses;                                                ///< M, kg
+    std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)> multiply;  ///< y = K x, at the particles of this process
+  };
 
   /// Largest eigenvalue of M⁻¹ K with K symmetric, by Lanczos' method in the inner product of M. Power iterations settle long
   /// before they arrive where the highest modes lie close together: steps of a viscous gel, taken at their result, were
   /// unstable. The rest of the error is covered by 2 %.
-  [[nodiscard]] static double largest_eigenvalue(const Eigen::VectorXd& masses, const Multiply& multiply);
+  [[nodiscard]] static double largest_eigenvalue(const Operator& of, BodyShare* share);
 
   /// Largest eigenvalue of M⁻¹ Σ_q m_q G_q G_qᵀ over the points of region r, with their masses m_q (kg), in the configuration of
   /// the table; 1/m².
   [[nodiscard]] static double largest_wave_number(const PointTable& table, const std::vector<double>& masses,
-                                                  const std::vector<double>& point_masses, Index r);
+                                                  const std::vector<double>& point_masses, Index r, BodyShare* share);
 
   /// Largest eigenvalue of the derivative of −M⁻¹ f in `field`, which the forces depend on, from differences of them: of `size` (in
   /// the unit of the field) at most in each of the first D components.
   [[nodiscard]] static double largest_eigenvalue(int D, const std::vector<double>& masses, Field& field, double size,
-                                                 const std::function<const Field&()>& internal_forces);
+                                                 const std::function<const Field&()>& internal_forces, BodyShare* share);
 
   template <class Body, class Region>
   [[nodiscard]] static double largest_wave_number(const Body& body, const Region& region, Index r) {
     std::vector<double> point_masses(body.table().points(), 0.0);
     for (std::size_t q = region.begin; q < region.end; ++q) point_masses[q] = body.point_volume(q) * region.law(q).density;
-    return largest_wave_number(body.table(), body.masses(), point_masses, r);
+    return largest_wave_number(body.table(), body.masses(), point_masses, r, body.share());
   }
 
   /// Largest eigenvalue of the derivative of −M⁻¹ f in `field`, which is the body's displacement (1/s²) or velocity
@@ -135,7 +139,7 @@ class StableStep {
       std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
       body.add_internal_forces(0.0, false);
       return body.force;
-    });
+    }, body.share());
     body.displacement = displacement;
     body.velocity = velocity;
     (void)wave_numbers(body);  // which the body remembers

@@ -8,20 +8,34 @@
 
 namespace tactoid {
 
-TACTOID_INLINE double StableStep::largest_eigenvalue(const Eigen::VectorXd& masses, const Multiply& multiply) {
-  const auto inner = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& y) { return x.dot(masses.cwiseProduct(y)); };
-  Eigen::VectorXd mode(masses.size()), before = Eigen::VectorXd::Zero(masses.size()), next(masses.size());
+TACTOID_INLINE double StableStep::largest_eigenvalue(const Operator& of, BodyShare* share) {
+  const OwnParticles own(share, of.masses.size());
+  const std::size_t width = of.per_particle;
+  ParticleSums sum(share, of.masses.size());
+  // Of vectors with the numbers of the particles of this process, one after the other.
+  std::vector<double> terms(of.masses.size());
+  const auto inner = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+    parallel_for(own.size(), [&](std::size_t k) {
+      const auto begin = static_cast<Eigen::Index>(k * width), n = static_cast<Eigen::Index>(width);
+      terms[own[k]] = of.masses[own[k]] * x.segment(begin, n).dot(y.segment(begin, n));
+    });
+    return sum([&](std::size_t i) { return Vector4(terms[i], 0.0, 0.0, 0.0); })[0];
+  };
+  const auto size = static_cast<Eigen::Index>(own.size() * width);
+  Eigen::VectorXd mode(size), before = Eigen::VectorXd::Zero(size), next(size);
   // Arbitrary: nothing is orthogonal to it.
-  for (Eigen::Index i = 0; i < mode.size(); ++i) mode[i] = std::sin(12.9898 * static_cast<double>(i + 1) * 1.61803398875);
+  for (std::size_t k = 0; k < own.size(); ++k)
+    for (std::size_t d = 0; d < width; ++d)
+      mode[static_cast<Eigen::Index>(k * width + d)] = std::sin(12.9898 * static_cast<double>(own[k] * width + d + 1) * 1.61803398875);
   mode /= std::sqrt(inner(mode, mode));
   std::vector<double> diagonal, beside;
   double largest = 0.0;
   constexpr int least = 10, most = 60;
   for (int iteration = 0; iteration < most; ++iteration) {
-    multiply(mode, next);
-    if (!next.allFinite()) return std::numeric_limits<double>::quiet_NaN();
-    next.array() /= masses.array();
+    of.multiply(mode, next);
+    for (std::size_t k = 0; k < own.size(); ++k) next.segment(static_cast<Eigen::Index>(k * width), static_cast<Eigen::Index>(width)) /= of.masses[own[k]];
     diagonal.push_back(inner(mode, next));
+    if (!std::isfinite(diagonal.back())) return std::numeric_limits<double>::quiet_NaN();
     next -= diagonal.back() * mode;
     if (!beside.empty()) next -= beside.back() * before;
     const double norm = std::sqrt(inner(next, next));
@@ -41,36 +55,41 @@ TACTOID_INLINE double StableStep::largest_eigenvalue(const Eigen::VectorXd& mass
 }
 
 TACTOID_INLINE double StableStep::largest_wave_number(const PointTable& table, const std::vector<double>& masses,
-                                                      const std::vector<double>& point_masses, Index r) {
-  const auto diagonal = Eigen::Map<const Eigen::VectorXd>(masses.data(), static_cast<Eigen::Index>(masses.size()));
-  return largest_eigenvalue(diagonal, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& result) {
-    result.setZero();
+                                                      const std::vector<double>& point_masses, Index r, BodyShare* share) {
+  Field waves(masses.size(), Vector4::Zero()), result(waves);  // their first components
+  const OwnParticles own(share, masses.size());
+  return largest_eigenvalue({1, masses, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& image) {
+    for (std::size_t k = 0; k < own.size(); ++k) waves[own[k]][0] = mode[static_cast<Eigen::Index>(k)];
+    if (share != nullptr) share->exchange(waves);
+    std::fill(result.begin(), result.end(), Vector4::Zero());
     for_each_chunk(table, [&](const PointChunk& chunk, std::size_t) {
       if (chunk.region != r) return;
       for (std::size_t q = chunk.begin; q < chunk.end; ++q) {
         Vector3 gradient = Vector3::Zero();
-        for (const TableEntry& entry : table.row(q)) gradient += mode[entry.particle] * entry.vector();
+        for (const TableEntry& entry : table.row(q)) gradient += waves[entry.particle][0] * entry.vector();
         gradient *= point_masses[q];
-        for (const TableEntry& entry : table.row(q)) result[entry.particle] += gradient.dot(entry.vector());
+        for (const TableEntry& entry : table.row(q)) result[entry.particle][0] += gradient.dot(entry.vector());
       }
     });
-  });
+    for (std::size_t k = 0; k < own.size(); ++k) image[static_cast<Eigen::Index>(k)] = result[own[k]][0];
+  }}, share);
 }
 
 TACTOID_INLINE double StableStep::largest_eigenvalue(int D, const std::vector<double>& masses, Field& field, double size,
-                                                     const std::function<const Field&()>& internal_forces) {
+                                                     const std::function<const Field&()>& internal_forces, BodyShare* share) {
   const Field start = field, rest = internal_forces();
-  const std::size_t n = masses.size();
-  Eigen::VectorXd diagonal(static_cast<Eigen::Index>(n) * D);
-  for (std::size_t i = 0; i < n; ++i) diagonal.segment(static_cast<Eigen::Index>(i) * D, D).setConstant(masses[i]);
-  return largest_eigenvalue(diagonal, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& result) {
-    const double step = size / mode.cwiseAbs().maxCoeff();
-    for (std::size_t i = 0; i < n; ++i)
-      for (int k = 0; k < D; ++k) field[i][k] = start[i][k] + step * mode[static_cast<Eigen::Index>(i) * D + k];
+  const OwnParticles own(share, masses.size());
+  return largest_eigenvalue({static_cast<std::size_t>(D), masses, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& result) {
+    double most = mode.size() > 0 ? mode.cwiseAbs().maxCoeff() : 0.0;
+    if (share != nullptr) most = share->largest(most);
+    const double step = size / most;
+    for (std::size_t k = 0; k < own.size(); ++k)
+      for (int d = 0; d < D; ++d) field[own[k]][d] = start[own[k]][d] + step * mode[static_cast<Eigen::Index>(k) * D + d];
+    if (share != nullptr) share->exchange(field);
     const Field& force = internal_forces();
-    for (std::size_t i = 0; i < n; ++i)
-      for (int k = 0; k < D; ++k) result[static_cast<Eigen::Index>(i) * D + k] = (1.0 / step) * (rest[i][k] - force[i][k]);
-  });
+    for (std::size_t k = 0; k < own.size(); ++k)
+      for (int d = 0; d < D; ++d) result[static_cast<Eigen::Index>(k) * D + d] = (1.0 / step) * (rest[own[k]][d] - force[own[k]][d]);
+  }}, share);
 }
 
 }  // namespace tactoid

@@ -31,10 +31,12 @@ class StaticProblem {
  public:
   static constexpr int dimension = Body::dimension;  ///< of the body
 
-  /// Throws ParameterError for a condition that EssentialConditions rejects.
+  /// Throws ParameterError for a condition that EssentialConditions rejects, and for a body whose rows several processes have.
   StaticProblem(Body& body, std::vector<PrescribedMotion> motions, Terms... terms)
       : body_(body), terms_(std::move(terms)...) {
     static_assert((BoundaryTerm<Terms, dimension> && ...), "A StaticProblem takes BoundaryTerms after its conditions.");
+    if (body.share() != nullptr)
+      throw ParameterError("Body \"" + body.name() + "\": statics need all of its rows, but several processes share them; compose it without a session, or with SetUp::whole.");
     std::fill(body_.velocity.begin(), body_.velocity.end(), Vector4::Zero());
     fields_.prepare(body_);
     essential_ = EssentialConditions(with_axis_condition(body_.cloud(), std::move(motions)), body_.particle_values(), fields_.reference,

@@ -124,7 +124,7 @@ template <class Body>
   const PointTable& table = body.table();
   const Field displacement = body.displacement_in_table();
   if (table.pairs_elsewhere > 0)
-    throw ParameterError("Body \"" + body.name() + "\": assemble_stiffness needs all rows, but other processes hold some of them; an implicit integrator keeps them all.");
+    throw ParameterError("Body \"" + body.name() + "\": assemble_stiffness needs all rows, but other processes hold some of them; an implicit integrator keeps them all, where the body is set up whole.");
   StiffnessMatrix K = detail::stiffness_pattern<D>(table);
   body.for_each_region([&](const auto& region, Index r) {
     using Law = typename std::decay_t<decltype(region)>::Law;

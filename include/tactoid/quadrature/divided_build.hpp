@@ -1,0 +1,71 @@
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tactoid/core/ranks.hpp>
+#include <tactoid/neighbors/neighbor_table.hpp>
+#include <tactoid/quadrature/point_table.hpp>
+#include <tactoid/quadrature/row_share.hpp>
+
+namespace tactoid {
+
+/// Points, and the particles that cover them: row k of the neighbours belongs to points[k].
+struct RowsToMake {
+  std::vector<Index> points;  ///< ascending
+  NeighborTable neighbors;    ///< of them
+};
+
+/// How the ranks build one table together. A quadrature that can takes it as the third argument of `build`.
+class DividedBuild {
+ public:
+  /// `region_cost`: of a point of each region of the cloud beside its pairs, in pairs. `ranks` must outlive it.
+  DividedBuild(Ranks& ranks, std::vector<double> region_cost) : ranks_(ranks), region_cost_(std::move(region_cost)) {}
+
+  /// Particles that cover the given points.
+  using Find = std::function<NeighborTable(std::span<const Index> points)>;
+
+  /// Divides a table that has its points and chunks (cut_chunks) but no rows: colours the chunks, and returns which rows this rank has to make. Each rank searches
+  /// around a share of the points, and tells the others what it found. `supports` of the particles, m. Collective; throws ParameterError on all ranks where these have not made the
+  /// same points and supports.
+  [[nodiscard]] RowsToMake divide(PointTable& table, std::span<const double> supports, const Find& find);
+
+  /// Does what each rank does for itself. What it throws on the first rank that fails is thrown on all: a ParameterError, or else a GeometryError. Collective.
+  template <class F>
+  void together(const F& work) const {
+    std::string failure;
+    try {
+      work();
+    } catch (const ParameterError& error) {
+      failure = std::string("P") + error.what();
+    } catch (const std::exception& error) {
+      failure = std::string("G") + error.what();
+    }
+    const std::string first = ranks_.first_failure(failure);
+    if (first.empty()) return;
+    if (first.front() == 'P') throw ParameterError(first.substr(1));
+    throw GeometryError(first.substr(1));
+  }
+
+  [[nodiscard]] const std::shared_ptr<RowShare>& share() const { return share_; }  ///< of this rank, after divide()
+
+ private:
+  void require_same_points(const PointTable& table, std::span<const double> supports) const;
+  /// What all chunks touch, and their costs.
+  [[nodiscard]] TableOutline outline(PointTable& table, const Find& find) const;
+
+  Ranks& ranks_;
+  std::vector<double> region_cost_;
+  std::shared_ptr<RowShare> share_;
+};
+
+}  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/quadrature/divided_build.ipp>
+#endif
