@@ -185,6 +185,9 @@ auto slab(PointCloud<3> cloud, std::size_t points_per_chunk, double stiffness = 
   return Body{"slab", std::move(cloud), Rkpm<3>{}, NodalCentroids{.points_per_chunk = points_per_chunk}, Materials{Region{"body", law}}};
 }
 
+/// So large that a coarse space helps to make it consistent.
+auto large_slab() { return slab(jitter(box({.size = Point<3>(1.9 * um, 1.0 * um, 1.0 * um), .cells = {29, 14, 14}}), 0.1), 0); }
+
 /// A free body under surface tension.
 template <class Body>
 auto simulation_of(Body body) {
@@ -282,7 +285,7 @@ TEST_CASE("Memory of the table falls with the number of ranks, and all rows are 
 
 TEST_CASE("A body so large that its gradients are made consistent with the help of smooth fields") {
   const auto compose = [] {
-    Body body = slab(jitter(box({.size = Point<3>(1.9 * um, 1.0 * um, 1.0 * um), .cells = {29, 14, 14}}), 0.1), 0);
+    Body body = large_slab();
     shake(body, 20.0);
     CHECK(body.size() >= detail::particles_for_coarse_space);
     return simulation_of(std::move(body));
@@ -297,12 +300,11 @@ TEST_CASE("A body so large that its gradients are made consistent with the help 
 
 TEST_CASE("Each rank makes the rows that it needs, with the bits of one process") {
   partitioner = mpi::partition_by_metis;
-  const auto compose = [] { return slab(jitter(box({.size = Point<3>(1.9 * um, 1.0 * um, 1.0 * um), .cells = {29, 14, 14}}), 0.1), 0); };
   Ranks::current = nullptr;
-  const Body alone = compose();
+  const Body alone = large_slab();
   Ranks::current = session;
   const DividedSetUp set_up;
-  const Body parts = compose();
+  const Body parts = large_slab();
   const PointTable &all = alone.table(), &here = parts.table();
   CHECK(here.pairs() == all.pairs());
   CHECK((here.size() < all.size()) == (session->size() > 1));

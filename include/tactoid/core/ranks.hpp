@@ -46,7 +46,6 @@ class Ranks {
   virtual ~Ranks() = default;
 
   SumOrder sum_order = SumOrder::of_one_process;  ///< of simulations, as it is when they are composed; the same on all ranks
-
   SetUp set_up = SetUp::whole;                    ///< of bodies, as it is when they are composed; the same on all ranks
 
   [[nodiscard]] virtual int rank() const = 0;  ///< of this process, in [0, size())

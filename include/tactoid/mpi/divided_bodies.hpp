@@ -47,7 +47,7 @@ class DividedBodies final : public Decomposition {
         const std::vector<int> of_chunks(begin, next);
         parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], of_chunks, owners_of_particles(table, of_chunks, touched[b])));
       }
-      if (ranks_.sum_order == SumOrder::of_ranks) sums_.emplace_back(SumByRank(comm_, parts_.back()->particle_owner));
+      if (ranks_.sum_order == SumOrder::of_ranks) sums_.emplace_back(SumByRank(comm_, parts_.back()->own));
       else sums_.emplace_back(SumInOrder(comm_, parts_.back()->particle_owner));
       evaluated_pairs_ += parts_.back()->evaluated_pairs(table);
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <mpi.h>
@@ -73,16 +74,18 @@ inline void reduce(MPI_Comm ranks, std::span<double> sums, std::span<double> max
   }
 }
 
+/// Sums over the ranks of numbers that all but one of them give as 0: exact, since adding zeros is. Collective.
+inline void combine(MPI_Comm ranks, std::span<double> values) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  succeeded(MPI_Iallreduce(MPI_IN_PLACE, values.data(), as_count(values.size()), MPI_DOUBLE, MPI_SUM, ranks, &request));
+  wait(request);
+}
+
 /// Sums over items that each belong to one rank: each rank its own, then rank after rank.
 class SumByRank {
  public:
-  /// `owner` of each item, the same on all ranks. `ranks` must outlive it.
-  SumByRank(MPI_Comm ranks, const std::vector<int>& owner) : ranks_(ranks) {
-    int rank = 0;
-    MPI_Comm_rank(ranks_, &rank);
-    for (std::size_t i = 0; i < owner.size(); ++i)
-      if (owner[i] == rank) own_.push_back(static_cast<Index>(i));
-  }
+  /// `own`: the items of this rank. `ranks` must outlive it.
+  SumByRank(MPI_Comm ranks, std::vector<Index> own) : ranks_(ranks), own_(std::move(own)) {}
   /// Σ terms over all items, each rank giving those that it owns. Collective.
   [[nodiscard]] double operator()(std::span<const double> terms) const {
     double sum = parallel_sum(own_.size(), [&](std::size_t k) { return terms[own_[k]]; });
@@ -155,9 +158,7 @@ class SumInOrder {
     std::array<double, sum_parts> sums{};
     for (std::size_t p = 0, k = 0; p < sum_parts; ++p)
       for (; k < end_of_part_[p]; ++k) sums[p] += in_[place_[k]];
-    // Adding zeros is exact.
-    succeeded(MPI_Iallreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sum_parts), MPI_DOUBLE, MPI_SUM, ranks_, &request));
-    wait(request);
+    combine(ranks_, sums);
     double total = 0.0;
     for (const double sum : sums) total += sum;
     return total;

@@ -52,9 +52,8 @@ class PartOfBody final : public BodyShare {
     chunk_owner = std::move(chunk_ranks);
     particle_owner = std::move(particle_ranks);
     point_owner = owners_of_points(table, chunk_owner);
-    int size = 1;
-    MPI_Comm_size(ranks, &size);
-    summing_ = summing_ranks(particle_owner, size);
+    MPI_Comm_size(ranks, &size_);
+    summing_ = summing_ranks(particle_owner, size_);
     for (Index i = 0; i < particle_owner.size(); ++i)
       if (particle_owner[i] == rank_) own.push_back(i);
     local.resize(particle_owner.size());
@@ -100,7 +99,7 @@ class PartOfBody final : public BodyShare {
   }
   void exchange(Field& field) override {
     if (!ghosts_) {
-      std::vector<std::vector<Index>> asked(ranks_count());
+      std::vector<std::vector<Index>> asked = lists();
       for (const Index i : here)
         if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
       ghosts_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, exchange_lists(ranks_, asked)), parcels_of(1, asked));
@@ -111,7 +110,7 @@ class PartOfBody final : public BodyShare {
   [[nodiscard]] bool sums(std::size_t p) const override { return summing_[p] == rank_; }
   void bring_to_parts(Field& field) override {
     if (!to_parts_) {
-      std::vector<std::vector<Index>> out(ranks_count()), in(out);
+      std::vector<std::vector<Index>> out = lists(), in = lists();
       for (std::size_t p = 0; p < sum_parts; ++p) {
         const auto [first, last] = sum_part(particle_owner.size(), p);
         for (std::size_t i = first; i < last; ++i) {
@@ -124,11 +123,7 @@ class PartOfBody final : public BodyShare {
     }
     send(*to_parts_, field);
   }
-  void combine(std::span<double> values) override {
-    MPI_Request request = MPI_REQUEST_NULL;
-    succeeded(MPI_Iallreduce(MPI_IN_PLACE, values.data(), as_count(values.size()), MPI_DOUBLE, MPI_SUM, ranks_, &request));
-    wait(request);
-  }
+  void combine(std::span<double> values) override { mpi::combine(ranks_, values); }
   [[nodiscard]] double largest(double number) override {
     reduce({}, {&number, 1});
     return number;
@@ -171,14 +166,14 @@ class PartOfBody final : public BodyShare {
     wait(request);
   }
   void reduce(std::span<double> sums, std::span<double> maxima) override { mpi::reduce(ranks_, sums, maxima); }
-  void gather_points(std::span<double> values, std::size_t per_point) override { OwnedValues(ranks_, point_owner).gather(values, per_point); }
+  void gather_points(std::span<double> values, std::size_t per_point) override {
+    if (!point_values_) point_values_ = std::make_unique<OwnedValues>(ranks_, point_owner);
+    point_values_->gather(values, per_point);
+  }
 
  private:
-  [[nodiscard]] std::size_t ranks_count() const {
-    int size = 1;
-    MPI_Comm_size(ranks_, &size);
-    return static_cast<std::size_t>(size);
-  }
+  /// One empty list for each rank.
+  [[nodiscard]] std::vector<std::vector<Index>> lists() const { return std::vector<std::vector<Index>>(static_cast<std::size_t>(size_)); }
   /// Parcels of so many fields, which carry() names.
   [[nodiscard]] static std::vector<Parcel> parcels_of(std::size_t fields, const std::vector<std::vector<Index>>& lists) {
     std::vector<Parcel> parcels;
@@ -192,7 +187,7 @@ class PartOfBody final : public BodyShare {
   }
   /// Which forces, and which rates of points, go to other ranks, and which come.
   void find_ways_back(const SharedBody& body) {
-    std::vector<std::vector<Index>> particles(ranks_count()), points(particles);
+    std::vector<std::vector<Index>> particles = lists(), points = lists();
     for (Index i = 0; i < needed.size(); ++i)
       if (needed[i] && particle_owner[i] != rank_) {
         abroad.push_back(i);
@@ -235,11 +230,12 @@ class PartOfBody final : public BodyShare {
   }
 
   MPI_Comm ranks_;
-  int rank_ = 0;
+  int rank_ = 0, size_ = 1;
   bool keep_rows_ = false;
   OwnedValues chunk_values_;
   std::vector<int> summing_;                                // the rank of each part of a sum
-  std::unique_ptr<ParcelsToNeighbors> ghosts_, to_parts_;  // made when they are first needed
+  std::unique_ptr<OwnedValues> point_values_;               // made when it is first needed, as the next two
+  std::unique_ptr<ParcelsToNeighbors> ghosts_, to_parts_;
   std::unique_ptr<ParcelsToNeighbors> back_;               // of forces
   std::vector<std::size_t> given_counts_, taken_counts_;  // per rank
   bool points_travel_ = false;                           // on any rank

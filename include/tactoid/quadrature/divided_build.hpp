@@ -57,7 +57,7 @@ class DividedBuild {
  private:
   void require_same_points(const PointTable& table, std::span<const double> supports) const;
   /// What all chunks touch, and their costs.
-  [[nodiscard]] TableOutline outline(PointTable& table, const Find& find) const;
+  [[nodiscard]] TableOutline outline(const PointTable& table, const Find& find) const;
 
   Ranks& ranks_;
   std::vector<double> region_cost_;

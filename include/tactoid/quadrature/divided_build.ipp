@@ -12,7 +12,7 @@
 
 namespace tactoid {
 
-TACTOID_INLINE TableOutline DividedBuild::outline(PointTable& table, const Find& find) const {
+TACTOID_INLINE TableOutline DividedBuild::outline(const PointTable& table, const Find& find) const {
   const auto ranks = static_cast<std::size_t>(ranks_.size()), rank = static_cast<std::size_t>(ranks_.rank());
   const std::size_t chunks = table.chunks.size();
   std::vector<std::size_t> first_chunk, first_point;  // of each rank
