@@ -4,6 +4,7 @@
 #include <string>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/geometry/cloud_part.hpp>
 #include <tactoid/geometry/facets.hpp>
 #include <tactoid/geometry/order.hpp>
 
@@ -49,6 +50,11 @@ template <int D>
                                   const std::array<bool, static_cast<std::size_t>(D)>& periodic,
                                   const Point<D>& origin, const std::string& region);
 
+template <int D>
+[[nodiscard]] PointCloud<D> brick_part(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells,
+                                       const std::array<bool, static_cast<std::size_t>(D)>& periodic, const Point<D>& origin,
+                                       const std::string& region, const Part& part);
+
 }  // namespace detail
 
 /// Particles on a line, `cells + 1` of them (`cells` if periodic). Throws ParameterError.
@@ -68,6 +74,19 @@ template <int D>
 [[nodiscard]] inline PointCloud<3> box(const Box& parameters) {
   parameters.validate();
   return detail::brick<3>(parameters.size, parameters.cells, parameters.periodic, parameters.origin, parameters.region);
+}
+
+/// One rank's part of rectangle(parameters), made without the rest: time and memory are those of the part. The grid is divided into bricks of nearly as many particles each. In the whole,
+/// particles are numbered row by row, the first direction fastest. Throws ParameterError, also where the grid cannot be divided so often.
+[[nodiscard]] inline PointCloud<2> rectangle_part(const Rectangle& parameters, const Part& part) {
+  parameters.validate();
+  return detail::brick_part<2>(parameters.size, parameters.cells, parameters.periodic, parameters.origin, parameters.region, part);
+}
+
+/// One rank's part of box(parameters); as above.
+[[nodiscard]] inline PointCloud<3> box_part(const Box& parameters, const Part& part) {
+  parameters.validate();
+  return detail::brick_part<3>(parameters.size, parameters.cells, parameters.periodic, parameters.origin, parameters.region, part);
 }
 
 }  // namespace tactoid

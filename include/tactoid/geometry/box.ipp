@@ -1,5 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
+
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/geometry/box.hpp>
 
@@ -16,29 +26,53 @@ TACTOID_INLINE void validate_brick(const char* name, const char* length, int dir
            periodic ? "at least 3 in a periodic direction" : "at least 1");
 }
 
+/// One direction of a regular grid, or a piece of it.
+struct GridAxis {
+  double origin = 0.0, size = 0.0;  // of the whole, m
+  int cells = 0;                    // of the whole
+  bool periodic = false;
+  std::vector<Index> nodes;         // that the piece has, by their numbers in the whole
+  bool closed = false;              // there is a cell from the last node of the piece to the first
+
+  GridAxis(double from, double length, int count, bool is_periodic)
+      : origin(from), size(length), cells(count), periodic(is_periodic), closed(is_periodic) {
+    nodes.resize(static_cast<std::size_t>(cells + (periodic ? 0 : 1)));
+    std::iota(nodes.begin(), nodes.end(), Index{0});
+  }
+  [[nodiscard]] double edge() const { return size / cells; }
+  [[nodiscard]] double place(std::size_t k) const { return origin + size * (static_cast<double>(nodes[k]) / static_cast<double>(cells)); }
+  [[nodiscard]] std::size_t cells_here() const { return nodes.size() - (closed ? 0 : 1); }
+};
 template <int D>
-PointCloud<D> brick(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells,
-                    const std::array<bool, static_cast<std::size_t>(D)>& periodic,
-                    const Point<D>& origin, const std::string& region) {
+using GridAxes = std::vector<GridAxis>;  // D of them
+
+template <int D>
+[[nodiscard]] GridAxes<D> grid_axes(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells, const std::array<bool, static_cast<std::size_t>(D)>& periodic,
+                                    const Point<D>& origin) {
+  GridAxes<D> axes;
+  for (int k = 0; k < D; ++k) axes.emplace_back(origin[k], size[k], cells[static_cast<std::size_t>(k)], periodic[static_cast<std::size_t>(k)]);
+  return axes;
+}
+
+/// Particles and cells of a grid, row by row; facets are those of what is here.
+template <int D>
+[[nodiscard]] PointCloud<D> grid(const GridAxes<D>& axes, const std::string& region) {
   PointCloud<D> cloud;
   cloud.regions = {region};
-  std::array<Index, static_cast<std::size_t>(D)> nodes{};
   std::size_t node_count = 1;
   std::size_t cell_count = 1;
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    nodes[k] = static_cast<Index>(cells[k] + (periodic[k] ? 0 : 1));
-    node_count *= nodes[k];
-    cell_count *= static_cast<std::size_t>(cells[k]);
-    if (periodic[k]) cloud.period[static_cast<int>(k)] = size[static_cast<int>(k)];
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    node_count *= axes[k].nodes.size();
+    cell_count *= axes[k].cells_here();
+    if (axes[k].periodic) cloud.period[static_cast<int>(k)] = axes[k].size;
   }
   cloud.positions.reserve(node_count);
   for (std::size_t n = 0; n < node_count; ++n) {
     Point<D> x;
     std::size_t rest = n;
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const int d = static_cast<int>(k);
-      x[d] = origin[d] + size[d] * (static_cast<double>(rest % nodes[k]) / static_cast<double>(cells[k]));
-      rest /= nodes[k];
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      x[static_cast<int>(k)] = axes[k].place(rest % axes[k].nodes.size());
+      rest /= axes[k].nodes.size();
     }
     cloud.positions.push_back(x);
   }
@@ -49,11 +83,11 @@ PointCloud<D> brick(const Point<D>& size, const std::array<int, static_cast<std:
       std::size_t rest = c;
       std::size_t number = 0;
       std::size_t stride = 1;
-      for (std::size_t k = 0; k < nodes.size(); ++k) {
-        const std::size_t along = rest % static_cast<std::size_t>(cells[k]) + ((a >> k) & 1u);
-        rest /= static_cast<std::size_t>(cells[k]);
-        number += (along % nodes[k]) * stride;  // wraps in periodic directions
-        stride *= nodes[k];
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        const std::size_t along = rest % axes[k].cells_here() + ((a >> k) & 1u);
+        rest /= axes[k].cells_here();
+        number += (along % axes[k].nodes.size()) * stride;  // wraps in periodic directions
+        stride *= axes[k].nodes.size();
       }
       cell[a] = static_cast<Index>(number);
     }
@@ -61,7 +95,146 @@ PointCloud<D> brick(const Point<D>& size, const std::array<int, static_cast<std:
   }
   cloud.cell_regions.assign(cell_count, 0);
   cloud.facets = extract_facets(cloud);
-  return morton_ordered(cloud);
+  return cloud;
+}
+
+template <int D>
+PointCloud<D> brick(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells,
+                    const std::array<bool, static_cast<std::size_t>(D)>& periodic,
+                    const Point<D>& origin, const std::string& region) {
+  return morton_ordered(grid<D>(grid_axes<D>(size, cells, periodic, origin), region));
+}
+
+/// The nodes of a grid divided among ranks: bricks, by recursive bisection along the longest direction.
+template <int D>
+class GridDivision {
+ public:
+  using Node = std::array<std::size_t, static_cast<std::size_t>(D)>;
+  struct Brick {
+    Node first{}, last{};  // [first, last)
+  };
+  GridDivision(const GridAxes<D>& axes, int ranks) : axes_(axes), ranks_(ranks) {
+    for (int rank = 0; rank < ranks; ++rank) (void)brick(rank);
+  }
+  /// The nodes of a rank. Throws ParameterError where there are none.
+  [[nodiscard]] Brick brick(int rank) const {
+    return descend([&](std::size_t, std::size_t, int upper) { return rank < upper; }).first;
+  }
+  /// The rank of a node.
+  [[nodiscard]] int owner(const Node& node) const {
+    return descend([&](std::size_t along, std::size_t cut, int) { return node[along] < cut; }).second;
+  }
+
+ private:
+  /// goes_low(direction, where it is cut, first rank above the cut) says on which side to go on.
+  template <class GoesLow>
+  [[nodiscard]] std::pair<Brick, int> descend(const GoesLow& goes_low) const {
+    Brick brick;
+    for (std::size_t k = 0; k < axes_.size(); ++k) brick.last[k] = axes_[k].nodes.size();
+    int first = 0;
+    for (int ranks = ranks_; ranks > 1;) {
+      std::size_t along = axes_.size();
+      double longest = 0.0;
+      for (std::size_t k = 0; k < axes_.size(); ++k) {
+        const std::size_t count = brick.last[k] - brick.first[k];
+        if (count < 2 || !(static_cast<double>(count) * axes_[k].edge() > longest * (1.0 + 1e-9))) continue;
+        longest = static_cast<double>(count) * axes_[k].edge();
+        along = k;
+      }
+      if (along == axes_.size()) throw ParameterError(fmt::format("Part.ranks = {} is not allowed: the grid cannot be divided so often.", ranks_));
+      const std::size_t count = brick.last[along] - brick.first[along];
+      const int lower = ranks / 2;
+      const std::size_t cut = brick.first[along] + std::clamp<std::size_t>((2 * count * static_cast<std::size_t>(lower) / static_cast<std::size_t>(ranks) + 1) / 2, 1, count - 1);
+      if (goes_low(along, cut, first + lower)) {
+        brick.last[along] = cut;
+        ranks = lower;
+      } else {
+        brick.first[along] = cut;
+        first += lower;
+        ranks -= lower;
+      }
+    }
+    return {brick, first};
+  }
+
+  const GridAxes<D>& axes_;
+  int ranks_;
+};
+
+template <int D>
+PointCloud<D> brick_part(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells, const std::array<bool, static_cast<std::size_t>(D)>& periodic,
+                         const Point<D>& origin, const std::string& region, const Part& part) {
+  part.validate();
+  using Division = GridDivision<D>;
+  using Node = typename Division::Node;
+  const GridAxes<D> whole = grid_axes<D>(size, cells, periodic, origin);
+  const Division division(whole, part.ranks);
+  const auto own = division.brick(part.rank);
+
+  // The piece that is here: own nodes, two supports around them, and one more for the cells.
+  double spacing = 0.0, count = 1.0;
+  for (const GridAxis& axis : whole) spacing = std::max(spacing, axis.edge()), count *= static_cast<double>(axis.nodes.size());
+  if (count > static_cast<double>(std::numeric_limits<Index>::max())) throw ParameterError(fmt::format("The grid has {:g} particles; {} are the most that can be numbered.", count, std::numeric_limits<Index>::max()));
+  GridAxes<D> here = whole;
+  std::vector<std::vector<char>> complete(here.size());  // per direction and node: it has the cells on both sides
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    const auto beyond = static_cast<std::int64_t>(std::ceil(reach_of_part(part, spacing) / whole[k].edge())) + 1;
+    const auto n = static_cast<std::int64_t>(whole[k].nodes.size());
+    std::int64_t first = static_cast<std::int64_t>(own.first[k]) - beyond, last = static_cast<std::int64_t>(own.last[k]) + beyond;
+    GridAxis& axis = here[k];
+    if (axis.periodic ? last - first < n : true) {
+      if (!axis.periodic) first = std::max<std::int64_t>(first, 0), last = std::min(last, n);
+      axis.nodes.clear();
+      for (std::int64_t i = first; i < last; ++i) axis.nodes.push_back(static_cast<Index>((i + n) % n));
+      axis.closed = false;
+    }
+    complete[k].assign(axis.nodes.size(), 1);
+    if (axis.closed) continue;
+    const auto cut = [&](Index i, Index side) { return axis.periodic || i != side; };
+    if (cut(axis.nodes.front(), 0)) complete[k].front() = 0;
+    if (cut(axis.nodes.back(), whole[k].nodes.back())) complete[k].back() = 0;
+  }
+  PointCloud<D> piece = grid<D>(here, region);
+
+  std::vector<Node> node(piece.size());  // of each particle, in the whole
+  std::array<std::vector<Index>, 3> kind;  // own, complete, beyond
+  for (Index i = 0; i < piece.size(); ++i) {
+    std::size_t rest = i;
+    bool is_own = true, is_complete = true;
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      const std::size_t along = rest % here[k].nodes.size();
+      rest /= here[k].nodes.size();
+      node[i][k] = here[k].nodes[along];
+      is_own = is_own && node[i][k] >= own.first[k] && node[i][k] < own.last[k];
+      is_complete = is_complete && complete[k][along];
+    }
+    kind[is_own ? 0 : is_complete ? 1 : 2].push_back(i);
+  }
+  // Sides on which the piece is cut are no facets.
+  std::erase_if(piece.facets, [&](const auto& facet) {
+    for (std::size_t k = 0; k < whole.size(); ++k)
+      for (const std::size_t side : {std::size_t{0}, std::size_t{whole[k].nodes.back()}})
+        if (!whole[k].periodic && std::all_of(facet.begin(), facet.end(), [&](Index i) { return node[i][k] == side; })) return false;
+    return true;
+  });
+
+  CloudPart made{.rank = part.rank, .ranks = part.ranks, .whole = static_cast<std::size_t>(count), .own = kind[0].size(), .complete = kind[0].size() + kind[1].size(), .number = {}, .owner = {}};
+  std::vector<Index> kept;
+  kept.reserve(piece.size());
+  for (const std::vector<Index>& list : kind) {
+    std::vector<Point<D>> places;
+    for (const Index i : list) places.push_back(piece.positions[i]);
+    for (const Index k : morton_order<D>(places)) kept.push_back(list[k]);
+  }
+  for (const Index i : kept) {
+    std::size_t number = 0;
+    for (std::size_t k = whole.size(); k-- > 0;) number = number * whole[k].nodes.size() + node[i][k];
+    made.number.push_back(static_cast<Index>(number));
+    made.owner.push_back(division.owner(node[i]));
+  }
+  PointCloud<D> result = kept_of(piece, kept);
+  result.part = std::make_shared<const CloudPart>(std::move(made));
+  return result;
 }
 
 }  // namespace tactoid::detail
@@ -97,5 +270,9 @@ template PointCloud<2> brick<2>(const Point<2>& size, const std::array<int, stat
 template PointCloud<3> brick<3>(const Point<3>& size, const std::array<int, static_cast<std::size_t>(3)>& cells,
                                 const std::array<bool, static_cast<std::size_t>(3)>& periodic, const Point<3>& origin,
                                 const std::string& region);
+template PointCloud<2> brick_part<2>(const Point<2>&, const std::array<int, static_cast<std::size_t>(2)>&, const std::array<bool, static_cast<std::size_t>(2)>&, const Point<2>&, const std::string&,
+                                     const Part&);
+template PointCloud<3> brick_part<3>(const Point<3>&, const std::array<int, static_cast<std::size_t>(3)>&, const std::array<bool, static_cast<std::size_t>(3)>&, const Point<3>&, const std::string&,
+                                     const Part&);
 }  // namespace tactoid::detail
 #endif

@@ -15,7 +15,7 @@ PointCloud<D> jitter(const PointCloud<D>& cloud, double fraction, std::uint64_t 
     if (fixed[i]) continue;
     for (int k = 0; k < D; ++k)
       moved.positions[i][k] +=
-          fraction * spacing[i] * detail::hashed_uniform(seed, i * 4 + static_cast<std::uint64_t>(k));
+          fraction * spacing[i] * detail::hashed_uniform(seed, cloud.number(i) * 4 + static_cast<std::uint64_t>(k));
   }
   validate(moved);
   return moved;

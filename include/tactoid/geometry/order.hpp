@@ -16,7 +16,7 @@ template <int D>
 [[nodiscard]] std::vector<Index> morton_order(const std::vector<Point<D>>& points);
 
 /// The same cloud with particles, cells and facets numbered along a Morton curve, so that neighbours in space are
-/// near in memory.
+/// near in memory. Throws ParameterError for a part of a cloud.
 template <int D>
 [[nodiscard]] PointCloud<D> morton_ordered(const PointCloud<D>& cloud);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactoid/core/compiled.hpp>
+#include <tactoid/core/errors.hpp>
 #include <tactoid/geometry/order.hpp>
 
 namespace tactoid {
@@ -33,6 +34,7 @@ std::vector<Index> morton_order(const std::vector<Point<D>>& points) {
 
 template <int D>
 PointCloud<D> morton_ordered(const PointCloud<D>& cloud) {
+  if (cloud.part) throw ParameterError("morton_ordered: the particles of a part of a cloud have an order of their own.");
   PointCloud<D> ordered;
   ordered.regions = cloud.regions;
   ordered.period = cloud.period;

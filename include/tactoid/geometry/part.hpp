@@ -9,9 +9,10 @@
 namespace tactoid {
 
 /// The part of a cloud that is made of the cells all of whose particles satisfy a predicate of the reference position, in
-/// the order of the cloud, with the part's own facets: an eighth of a ball, say. Throws GeometryError where no cell does.
+/// the order of the cloud, with the part's own facets: an eighth of a ball, say. Throws GeometryError where no cell does, ParameterError for the part of a cloud that one of several processes has.
 template <int D, class Predicate>
 [[nodiscard]] PointCloud<D> part_where(const PointCloud<D>& cloud, const Predicate& predicate) {
+  if (cloud.part) throw ParameterError("part_where: the cloud is one process's part of another; take the part of a whole.");
   PointCloud<D> part;
   part.regions = cloud.regions;
   part.period = cloud.period;

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -9,6 +11,18 @@
 #include <tactoid/core/tensor.hpp>
 
 namespace tactoid {
+
+/// What of a cloud one of several processes (ranks) has: the particles that belong to it, and around them what its rows may touch (cloud_part.hpp). Particles are numbered anew:
+/// first those that belong to the rank, then the others that have all their cells here, then what these cells have beyond.
+struct CloudPart {
+  int rank = 0;               ///< whose part it is
+  int ranks = 1;              ///< how many have parts
+  std::size_t whole = 0;      ///< particles of the whole cloud
+  std::size_t own = 0;        ///< particles [0, own) belong to the rank
+  std::size_t complete = 0;   ///< particles [0, complete) have all their cells here
+  std::vector<Index> number;  ///< per particle: its number in the whole cloud
+  std::vector<int> owner;     ///< per particle: the rank to which it belongs
+};
 
 /// Particles of one body in its reference configuration, with the background cells that give them volumes,
 /// quadrature cells, surface facets and pictures. The cells are no finite elements.
@@ -35,8 +49,11 @@ struct PointCloud {
   std::vector<Facet> facets;                         ///< the boundary, oriented outwards
   Point<D> period = Point<D>::Zero();                ///< period in each direction, m; 0 where not periodic
   bool axisymmetric = false;                         ///< a meridian section, D = 2 only
+  std::shared_ptr<const CloudPart> part;             ///< of the whole cloud, which one of several processes has; null: this is the whole
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }  ///< number of particles
+  /// Number of particle i in the whole cloud.
+  [[nodiscard]] std::size_t number(std::size_t i) const { return part ? part->number[i] : i; }
 
   /// Length of the ring through X, 2πR, m; 1 where the cloud is no meridian section.
   [[nodiscard]] double circumference(const Point<D>& X) const {
