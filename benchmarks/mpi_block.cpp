@@ -4,7 +4,7 @@
 //   mpirun -np 1 --bind-to none mpi_block --edge 54 --steps 20 --threads 2
 //
 // Options: particles along an edge, steps, threads of each rank; --sum-order ranks, where each row is evaluated
-// once; --set-up divided, where each rank makes the rows that it needs; and 1 in --scattered for a division that has nothing to do with places.
+// once; --set-up divided, where each rank makes the rows that it needs, or parts, where it makes its part of the cloud and nobody the whole (in the order of the ranks); and 1 in --scattered for a division that has nothing to do with places.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -50,7 +50,7 @@ long peak_megabytes() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool scattered = false;
+  bool scattered = false, parts = false;
   const mpi::Partitioner partitioner = [&](const mpi::ChunkGraph& graph, int ranks) {
     if (!scattered) return mpi::partition_by_metis(graph, ranks);
     std::vector<int> owner(graph.size());
@@ -67,12 +67,15 @@ int main(int argc, char** argv) {
     if (name == "--threads") threads = std::max(value, 1);
     if (name == "--sum-order" && argv[i + 1] == std::string("ranks")) session.sum_order = SumOrder::of_ranks;
     if (name == "--set-up" && argv[i + 1] == std::string("divided")) session.set_up = SetUp::divided;
+    if (name == "--set-up" && argv[i + 1] == std::string("parts")) parts = true, session.sum_order = SumOrder::of_ranks;
     if (name == "--scattered") scattered = value != 0;
   }
   set_thread_count(threads);
   const int cells = edge - 1;
   const double size = 1e-2, start = seconds();
-  Body block{"block", box({.size = {size, size, size}, .cells = {cells, cells, cells}}), Rkpm<3>{.support = 2.35}, NodalCentroids{},
+  const Rkpm<3> kernel{.support = 2.35};
+  const Box cube{.size = {size, size, size}, .cells = {cells, cells, cells}};
+  Body block{"block", parts ? box_part(cube, {.rank = session.rank(), .ranks = session.size(), .support = kernel.support}) : box(cube), kernel, NodalCentroids{},
              Materials{Region{"body", NeoHookean::from_young(1e6, 0.3)}}};
   for (std::size_t i = 0; i < block.size(); ++i) {
     const double z = block.cloud().positions[i][2] / size;

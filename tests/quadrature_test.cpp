@@ -329,7 +329,7 @@ TEST_CASE("quadratic splines of a coarse space hold affine functions, and wrap a
     CAPTURE(periodic);
     const PointCloud<3> cloud = box({.size = {2.0, 1.0, 1.0}, .cells = {10, 5, 5}, .periodic = {periodic, false, false}});
     const PointTable table = NodalCentroids{}.build(cloud, Rkpm<3>{});
-    const detail::CoarseSpace space(table, 8.0, 1000);
+    const detail::CoarseSpace space(table, 8.0, 1000, nullptr);
     const Eigen::MatrixXd affine = space.affine(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(space.size())));
     REQUIRE(affine.cols() == (periodic ? 3 : 4));
     CHECK((affine.transpose() * affine - Eigen::MatrixXd::Identity(affine.cols(), affine.cols())).norm() < 1e-12);

@@ -97,6 +97,7 @@ struct OneOfTwo final : Ranks {
   void gather(std::span<double>, std::span<const std::size_t>) override {}
   void gather(std::span<Index>, std::span<const std::size_t>) override {}
   [[nodiscard]] std::shared_ptr<RowShare> divide(const TableOutline&) override { return nullptr; }
+  [[nodiscard]] std::shared_ptr<RowShare> share_of(const PointTable&, std::shared_ptr<const CloudPart>) override { return nullptr; }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody>) override { return nullptr; }
   [[nodiscard]] bool reports_failure(std::string_view, int) override { return true; }
 

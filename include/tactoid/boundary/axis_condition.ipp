@@ -15,7 +15,7 @@ std::vector<PrescribedMotion> with_axis_condition(const PointCloud<D>& cloud, st
   std::vector<Index> free;
   for (Index i = 0; i < cloud.size(); ++i)
     if (cloud.on_axis(cloud.positions[i]) && !prescribed[i]) free.push_back(i);
-  if (!free.empty()) motions.push_back(fixed(std::move(free), {true, false, false}));
+  if (!free.empty() || cloud.part) motions.push_back(fixed(std::move(free), {true, false, false}));
   return motions;
 }
 

@@ -9,6 +9,7 @@
 #include <tactoid/boundary/prescribed_motion.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/quadrature/particle_values.hpp>
+#include <tactoid/quadrature/row_share.hpp>
 
 namespace tactoid {
 
@@ -31,8 +32,9 @@ class EssentialConditions {
 
   /// Corrects u so that the conditions hold at `time`, and the velocity of the step that led there. `time_step`
   /// is that step (0: an initial state, where no velocity is changed) and `step_before` the one before it (0 in the
-  /// first). Returns the work of the conditions on the body up to now, less what was returned before, J.
-  double impose(double time, double time_step, double step_before, Field& displacement, Field& velocity);
+  /// first). Returns the work of the conditions on the body up to now, less what was returned before, J. Where several processes have the conditions of their own particles, `share` adds up
+  /// the work and the reactions.
+  double impose(double time, double time_step, double step_before, Field& displacement, Field& velocity, RowShare* share = nullptr);
 
   /// Sets prescribed values at `time` in a field of displacements; for unknowns that are values at the particles.
   void prescribe(double time, Field& displacement) const {

@@ -37,7 +37,7 @@ TACTOID_INLINE EssentialConditions::EssentialConditions(std::vector<PrescribedMo
 }
 
 TACTOID_INLINE double EssentialConditions::impose(double time, double time_step, double step_before,
-                                                  Field& displacement, Field& velocity) {
+                                                  Field& displacement, Field& velocity, RowShare* share) {
   double work = 0.0;
   const double to_force = time_step > 0.0 ? 1.0 / (0.5 * (step_before + time_step) * time_step) : 0.0;
   std::fill(reactions_.begin(), reactions_.end(), Vector3::Zero());
@@ -98,6 +98,13 @@ TACTOID_INLINE double EssentialConditions::impose(double time, double time_step,
         last = {target[row], identity_ ? velocity[particle][c] : direction.interpolate(k, velocity, c), 0.0, 0.0};
       }
     }
+  }
+  if (share != nullptr) {
+    std::vector<double> sums(1, work);
+    for (const Vector3& reaction : reactions_) sums.insert(sums.end(), reaction.data(), reaction.data() + 3);
+    share->reduce(sums, {});
+    work = sums[0];
+    for (std::size_t m = 0; m < reactions_.size(); ++m) reactions_[m] = Vector3(sums[3 * m + 1], sums[3 * m + 2], sums[3 * m + 3]);
   }
   return work;
 }

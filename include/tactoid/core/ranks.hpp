@@ -14,6 +14,8 @@ namespace tactoid {
 
 class Decomposition;  // simulation/decomposition.hpp
 class RowShare;       // quadrature/row_share.hpp
+struct CloudPart;     // geometry/point_cloud.hpp
+struct PointTable;    // quadrature/point_table.hpp
 struct SharedBody;    // simulation/decomposition.hpp
 struct TableOutline;  // quadrature/row_share.hpp
 
@@ -79,6 +81,8 @@ class Ranks {
 
   /// Divides a table among the ranks before its rows are made. Collective.
   [[nodiscard]] virtual std::shared_ptr<RowShare> divide(const TableOutline& outline) = 0;
+  /// The share of this rank in a body of which each rank has a part of the cloud: `table` has the points and chunks of this part. Collective.
+  [[nodiscard]] virtual std::shared_ptr<RowShare> share_of(const PointTable& table, std::shared_ptr<const CloudPart> part) = 0;
   /// Divides bodies among the ranks. Collective; throws ParameterError on all ranks where these have not composed the same.
   [[nodiscard]] virtual std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) = 0;
 

@@ -41,7 +41,7 @@ class DividedBodies final : public Decomposition {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const PointTable& table = *bodies_[b].table;
       if (const RowShare* made = bodies_[b].made; made != nullptr) {
-        parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], made->chunk_owner, made->particle_owner));
+        parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], made->chunk_owner, made->particle_owner, made->part));
       } else {
         const auto begin = std::exchange(next, next + static_cast<std::ptrdiff_t>(table.chunks.size()));
         const std::vector<int> of_chunks(begin, next);
@@ -76,12 +76,15 @@ class DividedBodies final : public Decomposition {
     if (!whole_) whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::whole, [](const SharedBody&, Index) { return true; }));
     whole_->begin();
     whole_->end();
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      if (parts_[b]->part)
+        for (Field* field : bodies_[b].whole) parts_[b]->exchange(*field);
     // Buffers of whole bodies would be most of what a rank holds; implicit steps ask for them all the time.
     if (std::none_of(bodies_.begin(), bodies_.end(), [](const SharedBody& body) { return body.keep_rows; })) whole_.reset();
   }
   [[nodiscard]] double sum(std::size_t body, std::span<const double> terms) override { return sums_[body](terms); }
   [[nodiscard]] std::string told_by_owner(std::size_t body, std::size_t point, const std::string& text) override {
-    const int owner = parts_[body]->point_owner[point];
+    const int owner = parts_[body]->part ? parts_[body]->failed_rank : parts_[body]->point_owner[point];
     return "rank " + std::to_string(owner) + ": " + ranks_.text_of(owner, text);
   }
 
@@ -91,10 +94,15 @@ class DividedBodies final : public Decomposition {
   [[nodiscard]] std::size_t sent_to_neighbors() const { return neighbors_->sent(); }
 
  private:
-  /// A hash of what every rank must have composed alike: volumes, gradients, and the state; of a body whose rows each has made for itself, what it needs no rows for.
+  /// A hash of what every rank must have composed alike: volumes, gradients, and the state; of a body whose rows each has made for itself, what it needs no rows for; of one of which each has
+  /// a part, how many particles it has.
   void require_same_bodies() {
     Fingerprint fingerprint;
     for (const SharedBody& body : bodies_) {
+      if (body.made != nullptr && body.made->part) {
+        fingerprint.add(std::uint64_t{body.made->part->whole});
+        continue;
+      }
       fingerprint.add(std::uint64_t{body.table->particles});
       for (const double V : body.table->volume) fingerprint.add(V);
       for (std::size_t e = 0; e < body.table->size() && body.made == nullptr; ++e) {
@@ -114,7 +122,7 @@ class DividedBodies final : public Decomposition {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       for (Parcel& parcel : parcels) parcel.pieces.push_back({bodies_[b].*fields, {}});
       for (Index i = 0; i < bodies_[b].table->particles; ++i)
-        if (include(bodies_[b], i)) parcels[static_cast<std::size_t>(parts_[b]->particle_owner[i])].pieces.back().particles.push_back(i);
+        if (!parts_[b]->part && include(bodies_[b], i)) parcels[static_cast<std::size_t>(parts_[b]->particle_owner[i])].pieces.back().particles.push_back(i);
     }
     return parcels;
   }
@@ -129,7 +137,7 @@ class DividedBodies final : public Decomposition {
       for (Index i = 0; i < part.needed.size(); ++i)
         if (part.needed[i] && part.particle_owner[i] != ranks_.rank() && !bodies_[b].known_to_all[i])
           asked[static_cast<std::size_t>(part.particle_owner[i])].push_back(i);
-      std::vector<std::vector<Index>> wanted = exchange_lists(comm_, asked);
+      std::vector<std::vector<Index>> wanted = part.named_by_others(asked);
       for (std::size_t r = 0; r < n; ++r) {
         in[r].pieces.push_back({bodies_[b].motion, std::move(asked[r])});
         out[r].pieces.push_back({bodies_[b].motion, std::move(wanted[r])});

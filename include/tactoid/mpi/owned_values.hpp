@@ -81,6 +81,23 @@ inline void combine(MPI_Comm ranks, std::span<double> values) {
   wait(request);
 }
 
+/// The lists of all ranks, one behind the other. Collective.
+[[nodiscard]] inline std::vector<double> join(MPI_Comm ranks, std::span<const double> list) {
+  int size = 1;
+  MPI_Comm_size(ranks, &size);
+  const int own = as_count(list.size());
+  std::vector<int> counts(static_cast<std::size_t>(size)), places(static_cast<std::size_t>(size) + 1, 0);
+  MPI_Request request = MPI_REQUEST_NULL;
+  succeeded(MPI_Iallgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, ranks, &request));
+  wait(request);
+  std::size_t all = 0;
+  for (std::size_t r = 0; r < counts.size(); ++r) all += static_cast<std::size_t>(counts[r]), places[r + 1] = as_count(all);
+  std::vector<double> joined(all);
+  succeeded(MPI_Iallgatherv(list.data(), own, MPI_DOUBLE, joined.data(), counts.data(), places.data(), MPI_DOUBLE, ranks, &request));
+  wait(request);
+  return joined;
+}
+
 /// Sums over items that each belong to one rank: each rank its own, then rank after rank.
 class SumByRank {
  public:

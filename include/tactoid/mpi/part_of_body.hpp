@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -46,22 +47,26 @@ class PartOfBody final : public BodyShare {
   std::vector<char> needed;      ///< per particle: 1 where a row that is evaluated here touches it
 
   /// Of a table that is about to get its rows, in the order of one process; follow_rows() completes it. A rank for each chunk and each particle, the same on all ranks;
-  /// `ranks` must outlive it.
-  PartOfBody(MPI_Comm ranks, const PointTable& table, std::vector<int> chunk_ranks, std::vector<int> particle_ranks) : ranks_(ranks), chunk_values_(ranks, chunk_ranks) {
+  /// of a part of a cloud (`of`), only on this one. `ranks` must outlive it.
+  PartOfBody(MPI_Comm ranks, const PointTable& table, std::vector<int> chunk_ranks, std::vector<int> particle_ranks, std::shared_ptr<const CloudPart> of = nullptr) : ranks_(ranks) {
     MPI_Comm_rank(ranks, &rank_);
+    MPI_Comm_size(ranks, &size_);
+    part = std::move(of);
     chunk_owner = std::move(chunk_ranks);
     particle_owner = std::move(particle_ranks);
     point_owner = owners_of_points(table, chunk_owner);
-    MPI_Comm_size(ranks, &size_);
-    summing_ = summing_ranks(particle_owner, size_);
+    if (!part) {
+      chunk_values_ = OwnedValues(ranks, chunk_owner);
+      summing_ = summing_ranks(particle_owner, size_);
+    }
     for (Index i = 0; i < particle_owner.size(); ++i)
       if (particle_owner[i] == rank_) own.push_back(i);
     local.resize(particle_owner.size());
     std::iota(local.begin(), local.end(), Index{0});
   }
   /// Of a body that is composed. Collective.
-  PartOfBody(MPI_Comm ranks, SumOrder sum_order, const SharedBody& body, std::vector<int> chunk_ranks, std::vector<int> particle_ranks)
-      : PartOfBody(ranks, *body.table, std::move(chunk_ranks), std::move(particle_ranks)) {
+  PartOfBody(MPI_Comm ranks, SumOrder sum_order, const SharedBody& body, std::vector<int> chunk_ranks, std::vector<int> particle_ranks, std::shared_ptr<const CloudPart> of = nullptr)
+      : PartOfBody(ranks, *body.table, std::move(chunk_ranks), std::move(particle_ranks), std::move(of)) {
     order = sum_order;
     keep_rows_ = body.keep_rows;
     follow_rows(*body.table);
@@ -77,6 +82,24 @@ class PartOfBody final : public BodyShare {
     for (std::size_t q = 0; q < evaluated.size(); ++q)
       if (evaluated[q]) pairs += table.row(q).size();
     return pairs;
+  }
+
+  /// Lists of particles that this rank names to each other one, to which they belong, and gets: with the numbers that they have there. Collective.
+  [[nodiscard]] std::vector<std::vector<Index>> named_by_others(std::vector<std::vector<Index>> lists) const {
+    if (!part) return exchange_lists(ranks_, lists);
+    for (auto& list : lists)
+      for (Index& i : list) i = part->number[i];
+    lists = exchange_lists(ranks_, lists);
+    std::vector<Index> by_number(part->own);  // own particles by their number in the whole
+    std::iota(by_number.begin(), by_number.end(), Index{0});
+    std::sort(by_number.begin(), by_number.end(), [&](Index a, Index b) { return part->number[a] < part->number[b]; });
+    for (auto& list : lists)
+      for (Index& i : list) {
+        const auto at = std::lower_bound(by_number.begin(), by_number.end(), i, [&](Index a, Index number) { return part->number[a] < number; });
+        if (at == by_number.end() || part->number[*at] != i) throw ComputationError("Particle " + std::to_string(i) + " is said to belong to rank " + std::to_string(rank_) + ", and does not: the parts of the cloud are not of one division.");
+        i = *at;
+      }
+    return lists;
   }
 
   [[nodiscard]] int rank() const override { return rank_; }
@@ -102,11 +125,17 @@ class PartOfBody final : public BodyShare {
       std::vector<std::vector<Index>> asked = lists();
       for (const Index i : here)
         if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
-      ghosts_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, exchange_lists(ranks_, asked)), parcels_of(1, asked));
+      ghosts_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, named_by_others(asked)), parcels_of(1, asked));
     }
     send(*ghosts_, field);
   }
-  void complete(std::span<double> values) override { OwnedValues(ranks_, particle_owner).gather(values, 1); }
+  void complete(std::span<double> values) override {
+    if (!part) return OwnedValues(ranks_, particle_owner).gather(values, 1);
+    Field field(values.size(), Vector4::Zero());
+    for (const Index i : own) field[i][0] = values[i];
+    exchange(field);
+    for (const Index i : here) values[i] = field[i][0];
+  }
   [[nodiscard]] bool sums(std::size_t p) const override { return summing_[p] == rank_; }
   void bring_to_parts(Field& field) override {
     if (!to_parts_) {
@@ -124,10 +153,7 @@ class PartOfBody final : public BodyShare {
     send(*to_parts_, field);
   }
   void combine(std::span<double> values) override { mpi::combine(ranks_, values); }
-  [[nodiscard]] double largest(double number) override {
-    reduce({}, {&number, 1});
-    return number;
-  }
+  [[nodiscard]] std::vector<double> join(std::span<const double> list) override { return mpi::join(ranks_, list); }
   [[nodiscard]] std::size_t count_pairs(const PointTable& table) override {
     double pairs = 0.0;
     for (std::size_t q = 0; q < table.points(); ++q)
@@ -198,7 +224,7 @@ class PartOfBody final : public BodyShare {
       if (point_owner[q] == rank_ && particle != rank_) points[static_cast<std::size_t>(particle)].push_back(q);
     }
     const std::size_t fields = body.motion.size() - 1;  // forces belong to u and v, and a flux to the director
-    back_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(fields, particles), parcels_of(fields, exchange_lists(ranks_, particles)), Arrival::adds);
+    back_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(fields, particles), parcels_of(fields, named_by_others(particles)), Arrival::adds);
     const auto arriving = exchange_lists(ranks_, points);
     for (const auto& list : points) given_counts_.push_back(list.size()), given_points.insert(given_points.end(), list.begin(), list.end());
     for (const auto& list : arriving) taken_counts_.push_back(list.size()), taken_points.insert(taken_points.end(), list.begin(), list.end());

@@ -99,6 +99,12 @@ class Session final : public Ranks {
     const std::vector<int> owner = partition(*this, graph, options_.partitioner);
     return std::make_shared<PartOfBody>(ranks_, *outline.table, owner, owners_of_particles(*outline.table, owner, outline.touched));
   }
+  [[nodiscard]] std::shared_ptr<RowShare> share_of(const PointTable& table, std::shared_ptr<const CloudPart> part) override {
+    std::vector<int> owner;
+    for (const PointChunk& chunk : table.chunks) owner.push_back(table.owner[chunk.begin] < part->own ? rank_ : -1);
+    std::vector<int> of_particles = part->owner;
+    return std::make_shared<PartOfBody>(ranks_, table, std::move(owner), std::move(of_particles), std::move(part));
+  }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody> bodies) override {
     require_same_set_up();
     require_same("version of Tactoid", version);

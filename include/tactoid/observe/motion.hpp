@@ -6,6 +6,7 @@
 
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
+#include <tactoid/quadrature/row_share.hpp>
 
 namespace tactoid {
 
@@ -30,11 +31,22 @@ struct Motion {
   return motion(body.mass, body.reference, displacement, body.velocity);
 }
 
-/// Of body N of a simulation, at the present instant. Of a body of revolution: over whole rings, along the axis alone.
+namespace detail {
+
+/// Of the whole body, from those of the particles that each process has of it. Collective.
+[[nodiscard]] Motion summed(const Motion& own, RowShare& share);
+
+}  // namespace detail
+
+/// Of body N of a simulation, at the present instant; of a body of which each process has a part, of the whole (collective). Of a body of revolution: over whole rings, along the axis alone.
 template <std::size_t N, class S>
 [[nodiscard]] Motion motion(const S& simulation) {
   const auto& body = simulation.template body<N>();
-  Motion m = motion(body.masses(), body.reference(), body.displacement, simulation.template velocity<N>());
+  const Field velocity = simulation.template velocity<N>();
+  const std::size_t n = body.in_parts() ? body.cloud().part->own : body.size();
+  const auto first = [n](const auto& values) { return std::span(values).first(n); };
+  Motion m = motion(first(body.masses()), first(body.reference()), first(body.displacement), first(velocity));
+  if (body.in_parts()) m = detail::summed(m, *body.share());
   if (body.table().axisymmetric) {
     m.momentum[0] = m.center_of_mass[0] = 0.0;
     m.angular_momentum.setZero();

@@ -19,4 +19,13 @@ TACTOID_INLINE Motion motion(std::span<const double> mass, std::span<const Vecto
   return m;
 }
 
+TACTOID_INLINE Motion detail::summed(const Motion& own, RowShare& share) {
+  Motion m = own;
+  m.center_of_mass *= m.mass;
+  for (Vector3* sum : {&m.momentum, &m.angular_momentum, &m.center_of_mass}) share.reduce({sum->data(), 3}, {});
+  m.mass = share.sum(m.mass);
+  m.center_of_mass /= m.mass;
+  return m;
+}
+
 }  // namespace tactoid

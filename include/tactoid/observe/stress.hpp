@@ -24,12 +24,16 @@ namespace detail {
 }  // namespace detail
 
 /// Samples the Cauchy stress of a body at the present state. Particle values are the averages over the particle's
-/// points, weighted by reference volume (and by the shape functions, where unknowns are coefficients).
+/// points, weighted by reference volume (and by the shape functions, where unknowns are coefficients). Of a body of which each process has a part of the
+/// cloud, they are those of the part; collective.
 template <class Body>
 [[nodiscard]] StressFields stress_fields(Body& body) {
   std::vector<double> volumes(body.table().points());
   for (std::size_t q = 0; q < volumes.size(); ++q) volumes[q] = body.point_volume(q);
-  return detail::stress_fields(body.table(), body.sample_points(), volumes);
+  StressFields fields = detail::stress_fields(body.table(), body.sample_points(), volumes);
+  if (body.in_parts())  // rows of particles around the own ones are elsewhere
+    for (std::vector<double>* values : {&fields.effective_stress, &fields.pressure, &fields.volume_ratio}) body.share()->complete(*values);
+  return fields;
 }
 
 /// Mean (weighted by the volumes of the table) and largest value over the points of a region.

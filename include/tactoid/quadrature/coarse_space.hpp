@@ -22,8 +22,8 @@ namespace tactoid::detail {
 /// They hold the affine functions exactly.
 class CoarseSpace {
  public:
-  /// Grid cells of about `particles_per_cell` particles, larger ones where there would be more than `max_nodes` nodes.
-  CoarseSpace(const PointTable& table, double particles_per_cell, std::size_t max_nodes);
+  /// Grid cells of about `particles_per_cell` particles, larger ones where there would be more than `max_nodes` nodes. `share` is null where this process has all particles.
+  CoarseSpace(const PointTable& table, double particles_per_cell, std::size_t max_nodes, RowShare* share);
 
   [[nodiscard]] std::size_t size() const { return nodes_; }  ///< number of splines
 
@@ -62,24 +62,32 @@ class CoarseSpace {
 /// Rows that stand for all of a table: smooth fields feel neighbouring rows alike.
 template <class Operator>
 struct SampledRows {
-  const Operator& S;        ///< AffineResidual of the rows
-  const PointTable& table;  ///< that they are of
-  std::size_t step = 1;     ///< from one to the next, in that table
-  double weight = 1.0;      ///< for how many rows each stands
+  const Operator& S;          ///< AffineResidual of the rows
+  const PointTable& table;    ///< that they are of
+  std::vector<Index> points;  ///< of that table, ascending
+  double weight = 1.0;        ///< for how many rows each stands
 };
+/// The first of every `step` numbers of a list.
+[[nodiscard]] inline std::vector<Index> every(std::size_t step, const std::vector<Index>& list) {
+  std::vector<Index> chosen;
+  for (std::size_t k = 0; k < list.size(); k += step) chosen.push_back(list[k]);
+  return chosen;
+}
 
 /// The part of a preconditioner that acts on smooth fields: P E⁻¹ Pᵀ, with P from splines to particles and E near Pᵀ S P, between
 /// projections that leave out the affine functions: these are in the null space of S, where E⁻¹ would make much of round-off.
-/// Several processes make the same E, each for itself, and add up Pᵀ r together.
+/// Several processes make the same E, each for itself, and add up Pᵀ r together; where each has a part of the cloud, they add up E, too.
 class CoarseCorrection {
  public:
   /// Of the operator S of a table; `share` is null where this process has all of its rows.
   template <class Operator>
   CoarseCorrection(const PointTable& table, const SampledRows<Operator>& rows, RowShare* share)
-      : table_(table), share_(share), space_(table, particles_per_cell, most_nodes), coarse_(space_.size()) {
+      : table_(table), share_(share), space_(table, particles_per_cell, most_nodes, share), coarse_(space_.size()) {
     if (share == nullptr)
       for (const Vector4& X : table.particle_position) splines_.push_back(space_.at(X.head<3>()));
-    factorize(assemble(rows));
+    Couplings E = assemble(rows);
+    if (in_parts()) add_up(E);
+    factorize(E);
     affine_ = space_.affine(scale_);
     find_parts();
   }
@@ -97,6 +105,10 @@ class CoarseCorrection {
   static constexpr std::size_t most_nodes = 6000;
   static constexpr double regularization = 1e-6;  // of E, over its diagonal: affine functions are in its null space
 
+  [[nodiscard]] bool in_parts() const { return share_ != nullptr && share_->part; }
+  /// Particle k of those that are summed here, in their order; all of them unless they are in parts.
+  [[nodiscard]] std::size_t summed() const { return in_parts() ? share_->part->own : table_.particles; }
+  void add_up(Couplings& E) const;
   void take_off_affine();
   void find_parts();
   /// Those at particle i.
@@ -111,7 +123,7 @@ class CoarseCorrection {
     std::vector<double> block;          // Pᵀ W P of the row
     std::vector<Vector4> fits;          // Pᵀ W B
     std::array<std::pair<int, double>, 27> of_particle;
-    for (std::size_t q = 0; q < rows.table.points(); q += rows.step) {
+    for (const Index q : rows.points) {
       nodes.clear();
       rows.S.for_each_weighted(q, [&](Index particle, double, const Vector4&) {
         space_.for_each(splines(particle), [&](std::size_t node, double) {

@@ -1,16 +1,26 @@
 #pragma once
 
+#include <map>
+
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/quadrature/coarse_space.hpp>
 
 namespace tactoid::detail {
 
-TACTOID_INLINE CoarseSpace::CoarseSpace(const PointTable& table, double particles_per_cell, std::size_t max_nodes)
+TACTOID_INLINE CoarseSpace::CoarseSpace(const PointTable& table, double particles_per_cell, std::size_t max_nodes, RowShare* share)
     : dimension_(table.dimension) {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Vector4& X : table.particle_position) {
     low = low.cwiseMin(X.head<3>());
     high = high.cwiseMax(X.head<3>());
+  }
+  double particles = static_cast<double>(table.particles);
+  if (share != nullptr && share->part) {
+    particles = static_cast<double>(share->part->whole);
+    low = -low;
+    share->reduce({}, {low.data(), 3});
+    share->reduce({}, {high.data(), 3});
+    low = -low;
   }
   double box = 1.0;
   for (int k = 0; k < dimension_; ++k) {
@@ -19,7 +29,7 @@ TACTOID_INLINE CoarseSpace::CoarseSpace(const PointTable& table, double particle
     box *= length_[k];
   }
   origin_ = low;
-  double width = std::pow(box * particles_per_cell / static_cast<double>(table.particles), 1.0 / dimension_);
+  double width = std::pow(box * particles_per_cell / particles, 1.0 / dimension_);
   do {
     nodes_ = 1;
     for (int k = 0; k < dimension_; ++k) {
@@ -63,10 +73,20 @@ TACTOID_INLINE CoarseSpace::Splines CoarseSpace::at(const Vector3& X) const {
   return splines;
 }
 
+TACTOID_INLINE void CoarseCorrection::add_up(Couplings& E) const {
+  std::vector<double> list;  // node, node, value
+  for (std::size_t a = 0; a < E.size(); ++a)
+    for (const auto& [b, value] : E[a]) list.insert(list.end(), {static_cast<double>(a), static_cast<double>(b), value});
+  list = share_->join(list);
+  std::vector<std::map<int, double>> sums(E.size());
+  for (std::size_t k = 0; k < list.size(); k += 3) sums[static_cast<std::size_t>(list[k])][static_cast<int>(list[k + 1])] += list[k + 2];
+  for (std::size_t a = 0; a < E.size(); ++a) E[a].assign(sums[a].begin(), sums[a].end());
+}
+
 TACTOID_INLINE void CoarseCorrection::find_parts() {
   std::vector<std::vector<int>> places(sum_parts, std::vector<int>(space_.size(), -1));
   parallel_for(sum_parts, [&](std::size_t p) {
-    const auto [first, last] = sum_part(table_.particles, p);
+    const auto [first, last] = sum_part(summed(), p);
     for (std::size_t i = first; i < last; ++i) space_.for_each(splines(i), [&](std::size_t node, double) { places[p][node] = 0; });
   });
   part_offsets_.assign(1, 0);
@@ -78,23 +98,25 @@ TACTOID_INLINE void CoarseCorrection::find_parts() {
         part_nodes_.push_back(node);
       }
     part_offsets_.push_back(part_nodes_.size());
-    if (share_ == nullptr || share_->sums(p)) part_places_[p] = std::move(places[p]);
+    if (share_ == nullptr || in_parts() || share_->sums(p)) part_places_[p] = std::move(places[p]);
   }
   part_sums_.resize(part_nodes_.size());
 }
 
 TACTOID_INLINE void CoarseCorrection::add(Field& r, Field& z) {
-  if (share_ != nullptr) share_->bring_to_parts(r);
+  const bool together = share_ != nullptr && !in_parts();
+  if (together) share_->bring_to_parts(r);
   parallel_for(sum_parts, [&](std::size_t p) {
     std::fill(part_sums_.begin() + static_cast<std::ptrdiff_t>(part_offsets_[p]), part_sums_.begin() + static_cast<std::ptrdiff_t>(part_offsets_[p + 1]), Vector4::Zero());
     if (part_places_[p].empty()) return;
-    const auto [first, last] = sum_part(table_.particles, p);
+    const auto [first, last] = sum_part(summed(), p);
     for (std::size_t i = first; i < last; ++i)
       space_.for_each(splines(i), [&](std::size_t node, double value) { part_sums_[static_cast<std::size_t>(part_places_[p][node])] += value * r[i]; });
   });
-  if (share_ != nullptr) share_->combine({part_sums_[0].data(), 4 * part_sums_.size()});
+  if (together) share_->combine({part_sums_[0].data(), 4 * part_sums_.size()});
   std::fill(coarse_.begin(), coarse_.end(), Vector4::Zero());
   for (std::size_t k = 0; k < part_nodes_.size(); ++k) coarse_[part_nodes_[k]] += part_sums_[k];
+  if (in_parts()) share_->combine({coarse_[0].data(), 4 * coarse_.size()});
   take_off_affine();
   solve();
   take_off_affine();

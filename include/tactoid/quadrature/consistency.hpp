@@ -133,7 +133,7 @@ inline constexpr std::size_t particles_for_coarse_space = 5000;
 /// How several processes make the rows of a table consistent together.
 struct SharedRows {
   RowShare& share;              ///< the rows that this one has
-  PointTable samples;           ///< every sampling_step(points)-th row, on all of them, where there is a coarse space; released early
+  PointTable samples;           ///< every sampling_step(points)-th row, on all of them, where there is a coarse space and all have the whole cloud; released early
   std::vector<double> weights;  ///< of the kernel, beside the entries of the samples; released early
 };
 
@@ -156,7 +156,7 @@ void fit_boundary(const PointTable& table, const std::vector<Point<D>>& normals,
 /// preconditioner and, in bodies of many particles, a correction in a space of smooth fields (CoarseCorrection), which keeps the
 /// iterations near a hundred where they would grow with the square of the particles along an edge. With it constant stress gives no force on any particle inside: the patch test holds to the
 /// accuracy of the solve. `weights` are the kernel weights beside the entries (0 for padding); what is moved here is released early.
-/// Throws GeometryError for a row of odd length, and ComputationError when the column conditions cannot be met. Where several processes have the rows (`shared`), all of them call it, and get the same bits as one;
+/// Throws GeometryError for a row of odd length, and ComputationError when the column conditions cannot be met. Where several processes have the rows (`shared`), all of them call it, and get the same bits as one, unless each has a part of the cloud;
 /// the report's relative_size is then of the rows that are here.
 /// Background: J.-S. Chen, M. Hillman, M. Rüter, Int. J. Numer. Meth. Engng 2013, 95, 387 (variational
 /// consistency); the least-norm form keeps the operator symmetric.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -110,7 +111,7 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::vector<
       throw GeometryError(fmt::format("make_consistent: the row of point {} has an odd number of entries, {}; lay_out_rows makes them even.", q, table.offsets[q + 1] - table.offsets[q]));
   RowShare* const share = shared != nullptr ? &shared->share : nullptr;
   const detail::AffineResidual S(table, std::move(weights));
-  const std::size_t n = table.particles;
+  const std::size_t n = table.particles, whole = share != nullptr && share->part ? share->part->whole : n;
   Field residual = boundary;
   std::vector<double> diagonal(n, 0.0), gross(n, 0.0);  // gross: sums of the sizes of what Σ V G adds
   Vector4 size = Vector4::Zero();
@@ -134,15 +135,22 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::vector<
   for (std::size_t i = 0; i < n; ++i)
     if (share == nullptr || share->particle_owner[i] == share->rank()) floor = std::max(floor, std::max(gross[i], boundary[i].norm()));
   if (share != nullptr) floor = share->largest(floor);
-  floor = 1e-30 * floor * floor * static_cast<double>(n);
+  floor = 1e-30 * floor * floor * static_cast<double>(whole);
   std::optional<detail::CoarseCorrection> coarse;
-  if (n >= detail::particles_for_coarse_space) {
-    const std::size_t step = detail::sampling_step(table.points());
-    if (shared == nullptr) {
-      coarse.emplace(table, detail::SampledRows<detail::AffineResidual>{S, table, step, static_cast<double>(step)}, nullptr);
+  if (whole >= detail::particles_for_coarse_space) {
+    using Samples = detail::SampledRows<detail::AffineResidual>;
+    const bool in_parts = share != nullptr && share->part;
+    std::vector<Index> points;  // that this process evaluates for all
+    for (Index q = 0; q < table.points(); ++q)
+      if (!in_parts || table.owner[q] < share->part->own) points.push_back(q);
+    const std::size_t step = detail::sampling_step(in_parts ? static_cast<std::size_t>(share->sum(static_cast<double>(points.size()))) : points.size());
+    if (shared == nullptr || in_parts) {
+      coarse.emplace(table, Samples{S, table, detail::every(step, points), static_cast<double>(step)}, share);
     } else {
       const detail::AffineResidual of_samples(shared->samples, std::move(shared->weights));
-      coarse.emplace(table, detail::SampledRows<detail::AffineResidual>{of_samples, shared->samples, 1, static_cast<double>(step)}, share);
+      points.resize(shared->samples.points());
+      std::iota(points.begin(), points.end(), Index{0});
+      coarse.emplace(table, Samples{of_samples, shared->samples, points, static_cast<double>(step)}, share);
       shared->samples = {};
     }
   }

@@ -19,6 +19,13 @@ namespace tactoid {
 struct RowsToMake {
   std::vector<Index> points;  ///< ascending
   NeighborTable neighbors;    ///< of them
+
+  /// One more point, behind the others.
+  void add(Index point, std::span<const Index> row) {
+    points.push_back(point);
+    neighbors.indices.insert(neighbors.indices.end(), row.begin(), row.end());
+    neighbors.offsets.push_back(neighbors.indices.size());
+  }
 };
 
 /// How the ranks build one table together. A quadrature that can takes it as the third argument of `build`.
@@ -34,6 +41,12 @@ class DividedBuild {
   /// around a share of the points, and tells the others what it found. `supports` of the particles, m. Collective; throws ParameterError on all ranks where these have not made the
   /// same points and supports.
   [[nodiscard]] RowsToMake divide(PointTable& table, std::span<const double> supports, const Find& find);
+
+  /// Of a table that has the points of a part of a cloud, but no rows: which rows this rank has to make, those that touch its own particles. Collective; throws ParameterError on all
+  /// ranks where these have not the parts of one cloud.
+  [[nodiscard]] RowsToMake rows_of(const PointTable& table, const CloudPart& part, const Find& find) const;
+  /// Takes note of the share of this rank when the table has its rows: colours its chunks. Collective.
+  void share_part(PointTable& table, std::shared_ptr<const CloudPart> part, std::size_t points_per_chunk);
 
   /// Does what each rank does for itself. What it throws on the first rank that fails is thrown on all: a ParameterError, or else a GeometryError. Collective.
   template <class F>
@@ -52,7 +65,7 @@ class DividedBuild {
     throw GeometryError(first.substr(1));
   }
 
-  [[nodiscard]] const std::shared_ptr<RowShare>& share() const { return share_; }  ///< of this rank, after divide()
+  [[nodiscard]] const std::shared_ptr<RowShare>& share() const { return share_; }  ///< of this rank, after divide() or share_part()
 
  private:
   void require_same_points(const PointTable& table, std::span<const double> supports) const;

@@ -100,12 +100,36 @@ TACTOID_INLINE RowsToMake DividedBuild::divide(PointTable& table, std::span<cons
   RowsToMake rows;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const auto row = near.row(k);
-    if (!of_own_chunk[candidates[k]] && std::none_of(row.begin(), row.end(), is_own)) continue;
-    rows.points.push_back(candidates[k]);
-    rows.neighbors.indices.insert(rows.neighbors.indices.end(), row.begin(), row.end());
-    rows.neighbors.offsets.push_back(rows.neighbors.indices.size());
+    if (of_own_chunk[candidates[k]] || std::any_of(row.begin(), row.end(), is_own)) rows.add(candidates[k], row);
   }
   return rows;
+}
+
+TACTOID_INLINE RowsToMake DividedBuild::rows_of(const PointTable& table, const CloudPart& part, const Find& find) const {
+  ranks_.require_same("cloud of which it has a part", std::to_string(part.whole));
+  const bool fits = part.rank == ranks_.rank() && part.ranks == ranks_.size();
+  if (ranks_.largest(fits ? 0 : 1) > 0)
+    throw ParameterError("A rank has the part of another one, or of a cloud that was divided among more or fewer ranks than there are.");
+  RowsToMake rows;
+  together([&] {
+    std::vector<Index> points(table.points());
+    std::iota(points.begin(), points.end(), Index{0});
+    const NeighborTable near = find(points);
+    for (const Index q : points) {
+      const auto row = near.row(q);
+      if (table.owner[q] >= part.own && (row.empty() || row.front() >= part.own)) continue;  // rows are ascending
+      if (!row.empty() && row.back() >= part.complete)
+        throw ParameterError(fmt::format("The row of the point of particle {} needs particles that rank {} has not: make its part of the cloud for a larger support (Part::support).",
+                                         part.number[table.owner[q]], part.rank));
+      rows.add(q, row);
+    }
+  });
+  return rows;
+}
+
+TACTOID_INLINE void DividedBuild::share_part(PointTable& table, std::shared_ptr<const CloudPart> part, std::size_t points_per_chunk) {
+  color_chunks(table, points_per_chunk, part->own);
+  share_ = ranks_.share_of(table, std::move(part));
 }
 
 }  // namespace tactoid

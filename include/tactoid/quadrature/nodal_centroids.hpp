@@ -69,6 +69,7 @@ struct NodalCentroids {
   [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel, DividedBuild* divided = nullptr) const {
     validate();
     std::vector<NodalCell<K::dimension>> cells = nodal_cells(cloud);
+    if (cloud.part) std::erase_if(cells, [&](const auto& cell) { return cell.particle >= cloud.part->complete; });
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
       return std::pair(a.region, a.particle) < std::pair(b.region, b.particle);
     });

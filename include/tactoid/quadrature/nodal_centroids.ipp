@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/quadrature/nodal_centroids.hpp>
 
@@ -44,6 +46,11 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
                                     const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved, DividedBuild* divided) const {
   std::vector<double> supports = spacing;
   for (double& radius : supports) radius *= support;
+  // Beyond the complete particles of a part supports are not known: as large as any, they tell where a row would need them.
+  if (cloud.part && !supports.empty()) {
+    const auto beyond = supports.begin() + static_cast<std::ptrdiff_t>(cloud.part->complete);
+    std::fill(beyond, supports.end(), *std::max_element(supports.begin(), beyond));
+  }
 
   PointTable table = empty_table(cloud);
   for (const NodalCell<D>& cell : cells) {
@@ -67,10 +74,16 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
     fill_rows(table, weights, cloud, supports, rows_of_points, rows);
     color_chunks(table, points_per_chunk);
   } else {
-    cut_chunks(table, points_per_chunk);
-    const RowsToMake rows = divided->divide(table, supports, find);
+    RowsToMake rows;
+    if (cloud.part) {
+      rows = divided->rows_of(table, *cloud.part, find);
+    } else {
+      cut_chunks(table, points_per_chunk);
+      rows = divided->divide(table, supports, find);
+    }
     lay_out_rows(table, rows.neighbors, rows.points, table.points());
     divided->together([&] { fill_rows(table, weights, cloud, supports, rows_of_points, rows); });
+    if (cloud.part) divided->share_part(table, cloud.part, points_per_chunk);
     divided->share()->follow_rows(table);
   }
   if (consistency_tolerance > 0.0) {
@@ -83,7 +96,7 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
       make_consistent(table, std::move(weights), boundary, consistency_tolerance);
     } else {
       SharedRows shared{*divided->share(), {}, {}};
-      if (table.particles >= detail::particles_for_coarse_space) shared.samples = sampled_rows(table, shared.weights, cloud, supports, rows_of_points, find);
+      if (!cloud.part && table.particles >= detail::particles_for_coarse_space) shared.samples = sampled_rows(table, shared.weights, cloud, supports, rows_of_points, find);
       make_consistent(table, std::move(weights), boundary, consistency_tolerance, 20000, &shared);
     }
   }

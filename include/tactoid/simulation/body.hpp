@@ -333,7 +333,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     pack_motion();
     const Loop loop = force_loop();
     for_each_region([&](auto& region, Index) { loop.sample(region, samples); });
-    if (share_) gather_at_points<10>([&](std::size_t q, auto at) {
+    if (share_ && !in_parts()) gather_at_points<10>([&](std::size_t q, auto at) {
       for (int a = 0; a < 9; ++a) at(a, samples[q].cauchy(a % 3, a / 3));
       at(9, samples[q].J);
     });
@@ -358,6 +358,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   // --- shared by several processes ---------------------------------------------------------------------------
   /// How the rows of the table are divided among the processes that have made it together; null where this one has all of them.
   [[nodiscard]] BodyShare* share() const { return share_.get(); }
+  /// Whether this process has a part of the cloud only (cloud_part.hpp): particles and points are numbered in it, and nobody has the whole.
+  [[nodiscard]] bool in_parts() const { return share_ && share_->part; }
   /// Leaves to other processes what is not in this share of the body. Everything must be evaluated before.
   void share_with(std::shared_ptr<BodyShare> share) {
     share_ = std::move(share);
@@ -368,7 +370,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// Makes the rates of the director known at all points. Collective, as Decomposition's functions; nothing in a body that is not shared.
   void complete_rates() {
     if constexpr (has_director)
-      if (share_) gather_at_points<10>([&](std::size_t q, auto at) {
+      if (share_ && !in_parts()) gather_at_points<10>([&](std::size_t q, auto at) {
         for (int a = 0; a < 9; ++a) at(a, point_rate_[q](a % 3, a / 3));
         at(9, point_volume_ratio_[q]);
       });
@@ -376,7 +378,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// Makes the rates of the director and the histories known at all points; as complete_rates().
   void complete_points() {
     complete_rates();
-    if (!share_) return;
+    if (!share_ || in_parts()) return;
     for_each_region([&](auto& region, Index) {
       using Region = std::decay_t<decltype(region)>;
       constexpr std::size_t scalars = history_size<typename Region::Law>;
@@ -392,6 +394,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// What a step leaves to the next one. The reference positions tell bodies apart.
   template <class Archive>
   void state(Archive& archive) {
+    if (in_parts()) throw ParameterError("Body \"" + name_ + "\": nobody has the whole of it, and its state cannot be saved or restored.");
     if constexpr (!Archive::restoring) complete_points();
     archive.expect("reference", reference());
     archive.expect("points", table_.points());
@@ -621,10 +624,16 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     }
   }
 
-  /// Every rank makes all rows, or its own where the session says so and the quadrature can.
+  /// Every rank makes all rows; or its own where it has a part of the cloud, or the session says so and the quadrature can.
   void build_table(const Materials<Ms...>& materials) {
-    if constexpr (requires(DividedBuild* divided) { quadrature_.build(cloud_, kernel_, divided); })
-      if (Ranks* ranks = Ranks::current; ranks != nullptr && ranks->size() > 1 && ranks->set_up == SetUp::divided) {
+    Ranks* const ranks = Ranks::current != nullptr && Ranks::current->size() > 1 ? Ranks::current : nullptr;
+    constexpr bool can_divide = requires(DividedBuild* divided) { quadrature_.build(cloud_, kernel_, divided); };
+    if (cloud_.part && (!can_divide || cloud_.part->ranks != (ranks != nullptr ? ranks->size() : 1)))
+      throw ParameterError(!can_divide ? "Body \"" + name_ + "\": its cloud is a part of a whole, which NodalCentroids alone can sample."
+                                       : fmt::format("Body \"{}\": its cloud is one of {} parts, and there {} to share it.", name_, cloud_.part->ranks,
+                                                     ranks == nullptr ? std::string("is one process") : fmt::format("are {} processes", ranks->size())));
+    if constexpr (can_divide)
+      if (ranks != nullptr && (cloud_.part || ranks->set_up == SetUp::divided)) {
         std::vector<double> costs(cloud_.regions.size(), 0.0);
         for (std::size_t r = 0; r < costs.size(); ++r)
           materials.for_each([&](std::size_t, const auto& region) {
@@ -690,11 +699,14 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       }
     });
     if (share_) share_->complete(masses_);
-    for (std::size_t i = 0; i < masses_.size(); ++i)
-      if (!(masses_[i] > 0.0))
-        throw GeometryError(fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.",
-                                        name_, i, table_.particle_position[i][0], table_.particle_position[i][1],
-                                        table_.particle_position[i][2], masses_[i]));
+    const OwnParticles summed(in_parts() ? share_.get() : nullptr, masses_.size());
+    std::string failure;
+    for (std::size_t k = 0; k < summed.size() && failure.empty(); ++k)
+      if (const std::size_t i = summed[k]; !(masses_[i] > 0.0))
+        failure = fmt::format("Body \"{}\": particle {} at ({:.6g}, {:.6g}, {:.6g}) m has the lumped mass {:.3g} kg; enlarge the support.", name_, cloud_.number(i),
+                              table_.particle_position[i][0], table_.particle_position[i][1], table_.particle_position[i][2], masses_[i]);
+    if (in_parts()) failure = Ranks::current->first_failure(failure);
+    if (!failure.empty()) throw GeometryError(failure);
   }
 
   /// k_q² = V_q Σ_I ρ |G_qI|² / M_I: squared wave number of the point alone, in the configuration of the table.
@@ -744,7 +756,10 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
 
   /// Exchanges what the force loop found with the other processes, in the order in which all of them sum.
   void meet_other_ranks() {
-    if (share_->order == SumOrder::of_one_process) return gather_chunks();
+    if (share_->order == SumOrder::of_one_process) {
+      if (!in_parts()) gather_chunks();
+      return;
+    }
     if constexpr (has_director) {
       share_->return_forces(std::array{&force, &director_flux});
       using Rate = Eigen::Matrix<double, 10, 1>;
@@ -772,19 +787,26 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     found_.failure = no_failure;
     BodyTotals totals;
     for (std::size_t c = 0; c < chunks_.size(); ++c) {
+      if (in_parts() && share_->chunk_owner[c] != share_->rank()) continue;  // another rank has it, too
       totals += chunks_[c].totals;
       double& stretch = found_.stretch[table_.chunks[c].region];
       stretch = std::max(stretch, chunks_[c].stretch);
       found_.largest_volume_ratio = std::max(found_.largest_volume_ratio, chunks_[c].largest_volume_ratio);
       found_.failure = std::min(found_.failure, chunks_[c].failure);
     }
-    if (!share_ || share_->order == SumOrder::of_one_process) return totals;
+    if (!share_ || (share_->order == SumOrder::of_one_process && !in_parts())) return totals;
     std::array<double, 4> sums{totals.strain_energy, totals.stabilization_energy, totals.dissipated_power, totals.active_power};
     std::vector<double> maxima = found_.stretch;
     maxima.push_back(found_.largest_volume_ratio);
-    maxima.push_back(found_.failure == no_failure ? 0.0 : static_cast<double>(table_.points() - found_.failure));  // the first point has the largest
+    // The first point has the largest number; or the first rank, where each numbers its own ones.
+    constexpr double first = 1e15;
+    const double failed = found_.failure == no_failure ? 0.0 : first - static_cast<double>(in_parts() ? static_cast<std::size_t>(share_->rank()) : found_.failure);
+    maxima.push_back(failed);
     share_->reduce(sums, maxima);
-    found_.failure = maxima.back() == 0.0 ? no_failure : table_.points() - static_cast<std::size_t>(maxima.back());
+    const auto failure = static_cast<std::size_t>(first - maxima.back());
+    if (maxima.back() == 0.0) found_.failure = no_failure;
+    else if (!in_parts()) found_.failure = failure;
+    else if (share_->failed_rank = static_cast<int>(failure); share_->failed_rank != share_->rank()) found_.failure = 0;  // some point: it is not here
     maxima.pop_back();
     found_.largest_volume_ratio = maxima.back();
     maxima.pop_back();

@@ -28,6 +28,7 @@ class BodyShare : public RowShare {
   /// to which they belong are those of other ranks; and those where it is the other way round.
   std::vector<Index> abroad, given_points, taken_points;
   ///@}
+  int failed_rank = 0;  ///< where the ranks have parts of the cloud: the one at which the point is that failed
 
   /// Empties the rows that are not evaluated; does nothing where all rows must stay.
   virtual void drop_rows(PointTable& table) const = 0;
@@ -37,8 +38,6 @@ class BodyShare : public RowShare {
   virtual void return_forces(std::span<Field* const> fields) = 0;
   /// Values of given_points, `per_point` numbers each, to where they are taken_points. Collective.
   virtual void exchange_points(std::span<const double> given, std::span<double> taken, std::size_t per_point) = 0;
-  /// Sums and maxima over the ranks, of what each gives. Collective.
-  virtual void reduce(std::span<double> sums, std::span<double> maxima) = 0;
   /// Values of points, `per_point` numbers each: those of the points of own chunks in, those of all out. Collective.
   virtual void gather_points(std::span<double> values, std::size_t per_point) = 0;
 };

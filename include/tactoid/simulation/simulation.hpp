@@ -70,6 +70,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       : bodies_(std::move(bodies.list)), contacts_(std::move(contacts.list)), boundaries_(std::move(boundaries.list)),
         integrator_(std::move(integrator)) {
     static_assert(Integrator<I, Simulation>, "The last argument of a Simulation is an Integrator.");
+    require_possible_parts();
     for_each_body([&](auto& body, std::size_t b) {
       if (synchronous<I> && body.share() != nullptr)
         throw ParameterError("Body \"" + body.name() + "\": each process has made its own rows of it (SetUp::divided), and implicit steps need all rows; choose SetUp::whole, or explicit steps.");
@@ -83,8 +84,13 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
         if constexpr (is_motion<decltype(on)>)
           if (std::decay_t<decltype(on)>::body == b) motions.push_back(on.term);
       });
-      essential_[b] = EssentialConditions(with_axis_condition(body.cloud(), std::move(motions)), body.particle_values(), fields_[b].reference, body.masses());
-      essential_[b].impose(0.0, 0.0, 0.0, body.displacement, body.velocity);
+      motions = with_axis_condition(body.cloud(), std::move(motions));
+      if (body.in_parts())  // the others belong to other processes
+        for (PrescribedMotion& motion : motions) std::erase_if(motion.particles, [&](Index i) { return i >= body.cloud().part->own; });
+      essential_[b] = EssentialConditions(std::move(motions), body.particle_values(), fields_[b].reference, body.masses());
+      (void)impose(body, b, 0.0, 0.0);
+      if (body.in_parts())
+        for (Field* field : {&body.displacement, &body.velocity}) body.share()->exchange(*field);
       fields_[b].refresh(body, 0.0);
     });
     for_each_contact([&](auto& between, std::size_t) {
@@ -181,8 +187,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   [[nodiscard]] Field velocity() const {
     complete();
     const auto& body = std::get<N>(bodies_);
-    Field v(body.size());
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = present_velocity(body, N, i);
+    Field v(body.size(), Vector4::Zero());
+    if (body.in_parts()) body.for_each_particle([&](std::size_t i) { v[i] = present_velocity(body, N, i); });
+    else
+      for (std::size_t i = 0; i < v.size(); ++i) v[i] = present_velocity(body, N, i);
     return v;
   }
 
@@ -313,12 +321,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if constexpr (subcycled<I>)
         if (subcycling()) pace_[b].drift(body, time_step);
     });
+    // Prescribed particles of a whole body are known to all processes by now; of a part, each has imposed its own before it tells them.
+    for_each_body([&](auto& body, std::size_t b) { if (body.in_parts()) ledger_.external_work += impose(body, b, time_ + time_step, time_step); });
     begin_exchange();
-    for_each_body([&](auto& body, std::size_t b) {
-      if (essential_[b].empty()) return;
-      ledger_.external_work += essential_[b].impose(time_ + time_step, time_step, last_step_, body.displacement, body.velocity);
-      body.for_each_particle([&](std::size_t i) { body.force[i] += essential_[b].forces()[i]; });
-    });
+    for_each_body([&](auto& body, std::size_t b) { if (!body.in_parts()) ledger_.external_work += impose(body, b, time_ + time_step, time_step); });
     moved_ = true;
     step_before_ = last_step_;
     time_ += time_step;
@@ -606,6 +612,15 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     if (last_step_ > 0.0 && std::all_of(pace_.begin(), pace_.end(), [](const BodyPace& pace) { return pace.due(); })) ledger_.note_scale();
   }
 
+  /// The essential conditions of a body at `time`, the end of a step; the work that they do, J.
+  template <class Body>
+  double impose(Body& body, std::size_t b, double time, double time_step) {
+    if (essential_[b].empty()) return 0.0;
+    const double work = essential_[b].impose(time, time_step, last_step_, body.displacement, body.velocity, body.in_parts() ? body.share() : nullptr);
+    if (time_step > 0.0) body.for_each_particle([&](std::size_t i) { body.force[i] += essential_[b].forces()[i]; });
+    return work;
+  }
+
   template <class Place>
   static constexpr bool is_motion = std::is_same_v<std::decay_t<decltype(std::declval<Place>().term)>, PrescribedMotion>;
 
@@ -662,7 +677,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     bool finite = u.allFinite();
     for (const TableEntry& entry : body.table().row(q)) finite = finite && body.displacement[entry.particle].allFinite();
     const std::string message = fmt::format(
-        "Body \"{}\", particle {} at X = ({:.4g}, {:.4g}, {:.4g}) m, u = ({:.3g}, {:.3g}, {:.3g}) m, t = {:.6g} s: {}.", body.name(), particle, X[0], X[1],
+        "Body \"{}\", particle {} at X = ({:.4g}, {:.4g}, {:.4g}) m, u = ({:.3g}, {:.3g}, {:.3g}) m, t = {:.6g} s: {}.", body.name(), body.cloud().number(particle), X[0], X[1],
         X[2], u[0], u[1], u[2], time_,
         finite ? "the point is inverted (J <= 0); likely causes are a deformation too large for this resolution, a contact "
                  "too violent, or too weak a stabilisation"
@@ -687,6 +702,26 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
 
   // --- shared by several processes ---------------------------------------------------------------------------
+  /// Throws ParameterError where processes have parts of a body's cloud that takes part in what needs the whole.
+  void require_possible_parts() {
+    std::array<std::string, body_count> in_parts;  // names
+    for_each_body([&](const auto& body, std::size_t b) {
+      if (!body.in_parts()) return;
+      in_parts[b] = "Body \"" + body.name() + "\": each process has a part of its cloud; ";
+      if (synchronous<I>) throw ParameterError(in_parts[b] + "implicit steps need the whole.");
+      if (Ranks::current != nullptr && Ranks::current->sum_order != SumOrder::of_ranks) throw ParameterError(in_parts[b] + "choose SumOrder::of_ranks.");
+    });
+    const auto refuse = [&](std::size_t b, const char* what) {
+      if (!in_parts[b].empty()) throw ParameterError(in_parts[b] + what);
+    };
+    for_each_contact([&](auto& between, std::size_t) {
+      using Pair = std::decay_t<decltype(between)>;
+      for (const std::size_t b : {Pair::first, Pair::second}) refuse(b, "contacts need the whole.");
+    });
+    for_each_boundary([&](auto& on, std::size_t) {
+      if constexpr (!is_motion<decltype(on)>) refuse(std::decay_t<decltype(on)>::body, "boundary terms need the whole, prescribed motions do not.");
+    });
+  }
   /// Leaves to each process its part of the bodies, whose first state every process has evaluated.
   void decompose(Ranks& ranks) {
     std::vector<SharedBody> parts;
@@ -749,6 +784,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if constexpr (!is_motion<decltype(on)>) note(std::decay_t<decltype(on)>::body, reads_of<std::decay_t<decltype(on.term)>>);
     });
     part.known_to_all.assign(body.size(), all ? 1 : 0);
+    if (body.in_parts()) return part;
     if (facets)
       for (const auto& facet : body.cloud().facets)
         for (const Index i : facet) part.known_to_all[i] = 1;
@@ -775,6 +811,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
   template <class Body, class Term>
   [[nodiscard]] double sum_over_particles(std::size_t b, const Body& body, const Term& term) {
+    if (body.in_parts()) return ParticleSums(body.share(), body.size())([&](std::size_t i) { return Vector4(term(i), 0.0, 0.0, 0.0); })[0];
     if (!decomposition_) return parallel_sum(body.size(), term);
     body.for_each_particle([&](std::size_t i) { terms_[i] = term(i); });
     return decomposition_->sum(b, terms_);

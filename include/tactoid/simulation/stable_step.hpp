@@ -135,6 +135,7 @@ class StableStep {
       const Point<D> X = body.table().position[q].template head<D>();
       length = std::min(length, std::pow(body.table().volume[q] / body.cloud().circumference(X), 1.0 / D));
     }
+    if (body.share() != nullptr) length = -body.share()->largest(-length);
     const double eigenvalue = largest_eigenvalue(D, body.masses(), field, 1e-6 * length * rate, [&]() -> const Field& {
       std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
       body.add_internal_forces(0.0, false);

@@ -26,7 +26,7 @@ TACTOID_INLINE double StableStep::largest_eigenvalue(const Operator& of, BodySha
   // Arbitrary: nothing is orthogonal to it.
   for (std::size_t k = 0; k < own.size(); ++k)
     for (std::size_t d = 0; d < width; ++d)
-      mode[static_cast<Eigen::Index>(k * width + d)] = std::sin(12.9898 * static_cast<double>(own[k] * width + d + 1) * 1.61803398875);
+      mode[static_cast<Eigen::Index>(k * width + d)] = std::sin(12.9898 * static_cast<double>((share != nullptr ? share->number(own[k]) : k) * width + d + 1) * 1.61803398875);
   mode /= std::sqrt(inner(mode, mode));
   std::vector<double> diagonal, beside;
   double largest = 0.0;

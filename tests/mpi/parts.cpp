@@ -1,0 +1,341 @@
+// Bodies of which each rank has a part of the cloud, and nobody the whole, against the same ones in one process: the same but for round-off.
+//
+//   mpirun -np 4 --oversubscribe mpi_parts [options of doctest]
+//
+// All ranks run all cases, in the same order. Rank 0 computes alone, too, and compares.
+#define DOCTEST_CONFIG_IMPLEMENT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <tactoid/boundary/all.hpp>
+#include <tactoid/contact/all.hpp>
+#include <tactoid/core/state.hpp>
+#include <tactoid/director/all.hpp>
+#include <tactoid/geometry/all.hpp>
+#include <tactoid/integrator/central_difference.hpp>
+#include <tactoid/integrator/subcycled_central_difference.hpp>
+#include <tactoid/kernel/all.hpp>
+#include <tactoid/material/all.hpp>
+#include <tactoid/mpi.hpp>
+#include <tactoid/observe/motion.hpp>
+#include <tactoid/observe/reaction.hpp>
+#include <tactoid/observe/stress.hpp>
+#include <tactoid/output/body_frame.hpp>
+#include <tactoid/quadrature/all.hpp>
+#include <tactoid/simulation/body.hpp>
+#include <tactoid/simulation/simulation.hpp>
+
+using namespace tactoid;
+
+namespace {
+
+constexpr double um = 1e-6;
+
+mpi::Session* session = nullptr;
+
+[[nodiscard]] Part part(double support) { return {.rank = session->rank(), .ranks = session->size(), .support = support}; }
+
+/// What is compared: lists of numbers by name; of particles by their number in the whole.
+using Numbers = std::map<std::string, std::vector<double>>;
+
+/// `values(i)` of all particles, on all ranks; each gives those of its own ones.
+template <class Body, class Values>
+std::vector<double> of_particles(const Body& body, const Values& values) {
+  const auto* part = body.cloud().part.get();
+  std::vector<double> list;
+  std::size_t width = 0;
+  for (std::size_t i = 0; i < (part != nullptr ? part->own : body.size()); ++i) {
+    list.push_back(static_cast<double>(body.cloud().number(i)));
+    const auto x = values(i);
+    width = static_cast<std::size_t>(x.size());
+    for (std::size_t k = 0; k < width; ++k) list.push_back(x[static_cast<Eigen::Index>(k)]);
+  }
+  if (Ranks::current != nullptr) list = mpi::join(MPI_COMM_WORLD, list);
+  const std::size_t n = list.size() / (width + 1);
+  CHECK(n == (part != nullptr ? part->whole : body.size()));
+  std::vector<double> ordered(n * width);
+  for (std::size_t k = 0; k < n; ++k) std::copy_n(list.data() + k * (width + 1) + 1, width, ordered.data() + static_cast<std::size_t>(list[k * (width + 1)]) * width);
+  return ordered;
+}
+
+template <class S>
+Numbers numbers_of(S& simulation) {
+  auto& body = simulation.template body<0>();
+  Numbers n;
+  const Field velocity = simulation.template velocity<0>();
+  n["displacement"] = of_particles(body, [&](std::size_t i) { return body.displacement[i].template head<3>().eval(); });
+  n["velocity"] = of_particles(body, [&](std::size_t i) { return velocity[i].template head<3>().eval(); });
+  n["force"] = of_particles(body, [&](std::size_t i) { return body.force[i].template head<3>().eval(); });
+  n["mass"] = of_particles(body, [&](std::size_t i) { return Eigen::Matrix<double, 1, 1>(body.masses()[i]); });
+  if (!body.director.empty()) n["director"] = of_particles(body, [&](std::size_t i) { return body.director[i].template head<3>().eval(); });
+  const StressFields stress = stress_fields(body);
+  n["stress"] = of_particles(body, [&](std::size_t i) { return Vector3(stress.effective_stress[i], 0.0, 0.0); });
+  n["volume ratio"] = of_particles(body, [&](std::size_t i) { return Eigen::Matrix<double, 1, 1>(stress.volume_ratio[i]); });
+  const Motion m = motion<0>(simulation);
+  n["center"] = {m.center_of_mass[0], m.center_of_mass[1], m.center_of_mass[2]};
+  n["energies"] = {simulation.ledger().kinetic, simulation.ledger().strain, simulation.ledger().stabilization, simulation.ledger().dissipated, simulation.ledger().external_work,
+                   simulation.ledger().initial};
+  n["reactions"] = {0.0};
+  for (const Vector3& reaction : reactions<0>(simulation).conditions) n["reactions"].insert(n["reactions"].end(), reaction.begin(), reaction.end());
+  n["step"] = {simulation.largest_stable_time_step()};
+  n["time"] = {simulation.time()};
+  n["pairs"] = {static_cast<double>(simulation.pairs())};
+  return n;
+}
+
+/// Largest difference, over the largest number.
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  REQUIRE(a.size() == b.size());
+  double off = 0.0, size = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    off = std::max(off, std::abs(a[k] - b[k]));
+    size = std::max(size, std::abs(a[k]));
+  }
+  return off == 0.0 ? 0.0 : off / size;
+}
+
+/// Runs `compute(simulation)` on what `compose(cloud)` gives, of the whole cloud on rank 0 alone, and in parts, twice: the same but for `tolerance`; the second time to the bit.
+template <int D, class Compose, class Compute>
+void compare(const PointCloud<D>& cloud, double support, const Compose& compose, const Compute& compute, double tolerance = 1e-11) {
+  Numbers alone;
+  if (session->rank() == 0) {
+    Ranks::current = nullptr;
+    auto simulation = compose(cloud);
+    compute(simulation);
+    alone = numbers_of(simulation);
+    Ranks::current = session;
+  }
+  const auto in_parts = [&] {
+    auto simulation = compose(part_of(cloud, part(support)));
+    CHECK(simulation.template body<0>().in_parts() == (session->size() > 1));
+    CHECK(simulation.template body<0>().size() == simulation.template body<0>().cloud().size());
+    compute(simulation);
+    return numbers_of(simulation);
+  };
+  const Numbers first = in_parts(), second = in_parts();
+  if (session->rank() != 0) return;
+  for (const auto& [name, list] : alone) {
+    INFO(name);
+    CHECK(difference(list, first.at(name)) <= tolerance);
+    CHECK(first.at(name) == second.at(name));
+  }
+  CHECK(alone.at("pairs") == first.at("pairs"));
+  CHECK(alone.at("mass").size() == cloud.size());
+}
+
+template <class Body>
+void shake(Body& body, double speed) {
+  for (std::size_t i = 0; i < body.size(); ++i)
+    for (int k = 0; k < Body::dimension; ++k) body.velocity[i][k] = speed * detail::hashed_uniform(7, 3 * body.cloud().number(i) + static_cast<std::size_t>(k));
+}
+
+/// Steps of a length that does not feel round-off: two digits of 0.4 of the stable one.
+template <class S>
+void take(S& simulation, std::size_t steps) {
+  for (const std::size_t end = simulation.steps() + steps; simulation.steps() < end;) {
+    const double step = 0.4 * simulation.largest_stable_time_step(), digit = std::pow(10.0, std::floor(std::log10(step)) - 1.0);
+    simulation.run(simulation.time() + std::floor(step / digit) * digit);
+  }
+}
+
+template <int D>
+auto slab(PointCloud<D> cloud, std::size_t points_per_chunk = 24) {
+  return Body{"slab", std::move(cloud), Rkpm<D>{}, NodalCentroids{.points_per_chunk = points_per_chunk}, Materials{Region{"body", YangVisco<>{}}}};
+}
+template <class Body>
+auto free_body(Body body) {
+  return Simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{}, CentralDifference{.safety = 0.5}};
+}
+template <int D>
+auto shaken_slab(const PointCloud<D>& cloud) {
+  auto body = slab(cloud);
+  shake(body, 20.0);
+  return free_body(std::move(body));
+}
+
+const Box cube{.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {7, 7, 7}};
+
+}  // namespace
+
+TEST_CASE("A free block") {
+  compare(jitter(box(cube), 0.1), Rkpm<3>{}.support, shaken_slab<3>, [](auto& simulation) {
+    const Vector3 before = motion<0>(simulation).momentum;
+    take(simulation, 200);
+    CHECK((motion<0>(simulation).momentum - before).norm() < 1e-11 * 1e3 * um * um * um * 20.0);
+  });
+}
+
+TEST_CASE("A long bar, periodic, which no rank has whole") {
+  const PointCloud<3> bar = jitter(box({.size = Point<3>(8.0 * um, 0.4 * um, 0.5 * um), .cells = {56, 3, 4}, .periodic = {true, false, false}}), 0.1);
+  compare(bar, Rkpm<3>{}.support, shaken_slab<3>, [](auto& simulation) {
+    const auto& body = simulation.template body<0>();
+    if (Ranks::current != nullptr && session->size() > 2) CHECK(body.size() < body.cloud().part->whole);
+    take(simulation, 50);
+  });
+}
+
+TEST_CASE("A body so large that its gradients are made consistent with the help of smooth fields") {
+  const PointCloud<3> cloud = jitter(box({.size = Point<3>(1.9 * um, 1.0 * um, 1.0 * um), .cells = {29, 14, 14}}), 0.1);
+  CHECK(cloud.size() >= detail::particles_for_coarse_space);
+  compare(cloud, Rkpm<3>{}.support, [](const PointCloud<3>& here) {
+    auto body = slab(here, 0);
+    shake(body, 20.0);
+    return free_body(std::move(body));
+  }, [](auto& simulation) { take(simulation, 3); }, 1e-10);
+}
+
+TEST_CASE("A graded plate that is pulled") {
+  const PointCloud<2> cloud = rectangle({.size = {2.0 * um, 1.0 * um}, .cells = {16, 8}});
+  compare(cloud, Rkpm<2>{}.support, [](const PointCloud<2>& here) {
+    const auto left = select(here, [](const Point<2>& X) { return X[0] < 1e-9; });
+    const auto right = select(here, [](const Point<2>& X) { return X[0] > 1.999 * um; });
+    Body body{"plate", here, Rkpm<2>{}, NodalCentroids{.points_per_chunk = 16},
+              Materials{Region{"body", Graded{[](const Vector3& X) { return NeoHookean::from_young(1e4 * (1.0 + X[0] / um), 0.3); }}}}};
+    shake(body, 0.1);
+    return Simulation{Bodies{std::move(body)}, Contacts{},
+                      Boundaries{on<0>(fixed(left)), on<0>(PrescribedMotion{right, [](const Vector3&, double t) { return Vector3(1e-3 * um + 0.1 * t, 0.0, 0.0); }, {true, false, false}})},
+                      CentralDifference{.safety = 0.5}};
+  }, [](auto& simulation) {
+    take(simulation, 100);
+    CHECK(std::abs(simulation.ledger().external_work) > 0.0);
+    CHECK(reactions<0>(simulation).conditions[1][0] != 0.0);
+    CHECK(simulation.ledger().error() < 0.02);
+  });
+}
+
+TEST_CASE("A cell of two regions with a director, in the plane and in space") {
+  const auto compose = [](const PointCloud<3>& here) {
+    Body body{"cell", here, Rkpm<3>{}, NodalCentroids{.points_per_chunk = 16}, Materials{Region{"nucleus", ModifiedMooneyRivlin{}}, Region{"cytoplasm", NematicGel<>{}}}, DirectorField<>{},
+              [](const Vector3& X) { return Vector3(std::cos(1e6 * X[0]), std::sin(1e6 * X[1]), 0.3); }};
+    shake(body, 0.5);
+    return free_body(std::move(body));
+  };
+  compare(ball({.radius = 5.0 * um, .core_radius = 2.0 * um, .core_cells = 4, .shells = 4}), Rkpm<3>{}.support, compose, [](auto& simulation) { take(simulation, 50); });
+}
+
+TEST_CASE("A ring about the axis") {
+  const PointCloud<2> ring = meridian(Disc{.radius = 1.0 * um, .height = 0.5 * um, .core_cells = 8, .rings = 4, .layers = 6});
+  compare(ring, Rkpm<2>{}.support, [](const PointCloud<2>& here) {
+    Body body{"ring", here, Rkpm<2>{}, NodalCentroids{.points_per_chunk = 16}, Materials{Region{"body", NeoHookean::from_young(1e4, 0.3)}}};
+    shake(body, 0.5);
+    return free_body(std::move(body));
+  }, [](auto& simulation) { take(simulation, 50); });
+}
+
+TEST_CASE("Gradients in single precision, and steps of its own") {
+  compare(jitter(box(cube), 0.1), Rkpm<3>{}.support, [](const PointCloud<3>& here) {
+    Body body{"block", here, Rkpm<3>{}, stored_as<float>(NodalCentroids{.points_per_chunk = 24}), Materials{Region{"body", YangVisco<>{}}}};
+    shake(body, 20.0);
+    return Simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{}, SubcycledCentralDifference{CentralDifference{.safety = 0.5}, 4}};
+  }, [](auto& simulation) { take(simulation, 40); });
+}
+
+TEST_CASE("A box that is made in parts is the box") {
+  const Box bar{.size = Point<3>(4.0 * um, 0.5 * um, 0.5 * um), .cells = {40, 4, 5}};
+  const auto compose = [](PointCloud<3> cloud) {
+    auto body = slab(std::move(cloud));
+    for (std::size_t i = 0; i < body.size(); ++i) body.velocity[i][0] = 10.0 * std::sin(body.cloud().positions[i][0] / um);
+    return free_body(std::move(body));
+  };
+  auto divided = compose(box_part(bar, part(Rkpm<3>{}.support)));
+  take(divided, 40);
+  auto whole = [&] {
+    Ranks::current = nullptr;
+    auto simulation = compose(box(bar));
+    take(simulation, 40);
+    Ranks::current = session;
+    return save_state(simulation);
+  }();
+  CHECK(divided.ledger().strain == doctest::Approx(whole.at("ledger/strain").values[0]).epsilon(1e-11));
+  CHECK(divided.time() == doctest::Approx(whole.at("time").values[0]).epsilon(1e-11));
+  const auto& body = divided.body<0>();
+  if (session->size() > 3) CHECK(body.size() < 0.8 * static_cast<double>(body.cloud().part->whole));
+}
+
+TEST_CASE("Frames are written in pieces") {
+  auto simulation = shaken_slab(box_part(cube, part(Rkpm<3>{}.support)));
+  take(simulation, 5);
+  auto& body = simulation.body<0>();
+  const StressFields stress = stress_fields(body);
+  if (body.in_parts())
+    for (const Index i : body.share()->here) CHECK(stress.volume_ratio[i] > 0.1);  // at all vertices of own cells
+  const auto folder = std::filesystem::temp_directory_path() / ("tactoid_parts_" + session->text_of(0, std::to_string(::getpid())));
+  std::filesystem::create_directories(folder);
+  (void)session->largest(0);
+  std::vector<int> owners(body.size(), 0);
+  if (simulation.decomposition() != nullptr) owners = simulation.decomposition()->owners(0);
+  write_body_pieces(folder / "slab.pvtu", body, simulation.particles<0>(), stress, simulation.time(), owners);
+  double own = 0.0, cells = 0.0;
+  for (const int owner : owners) own += owner == session->rank() ? 1.0 : 0.0;
+  for (const auto& cell : body.cloud().cells) cells += owners[cell[0]] == session->rank() ? 1.0 : 0.0;
+  const std::vector<double> all = mpi::join(MPI_COMM_WORLD, std::vector<double>{own, cells});
+  own = cells = 0.0;
+  for (std::size_t r = 0; r < all.size(); r += 2) own += all[r], cells += all[r + 1];
+  CHECK(own == 512.0);
+  CHECK(cells == 343.0);
+  if (session->rank() == 0)
+    for (int r = 0; r < session->size(); ++r) CHECK(std::filesystem::exists(folder / ("slab_" + std::to_string(r) + ".vtu")));
+  (void)session->largest(0);
+  if (session->rank() == 0) std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("A point that is inverted on one rank ends the step on all, and the state before is there again") {
+  auto body = slab(box_part(cube, part(Rkpm<3>{}.support)));
+  const std::size_t wanted = 8 * 8 * 8 - 1;  // the last particle of the last rank
+  for (std::size_t i = 0; i < body.size(); ++i)
+    if (body.cloud().number(i) == wanted) body.velocity[i][0] = -1e4;
+  auto simulation = free_body(std::move(body));
+  std::string told;
+  try {
+    simulation.run(1.0);
+  } catch (const ComputationError& error) {
+    told = error.what();
+  }
+  CHECK_NOTHROW(session->require_same("message", told));
+  CHECK(told.find("Body \"slab\", particle ") != std::string::npos);
+  CHECK(told.find("the point is inverted") != std::string::npos);
+  CHECK(told.starts_with("rank ") == (session->size() > 1));
+  for (const Vector4& u : simulation.body<0>().displacement) CHECK(u.allFinite());
+}
+
+TEST_CASE("What needs the whole is refused, on all ranks") {
+  if (session->size() == 1) return;
+  const auto body = [] { return slab(box_part(cube, part(Rkpm<3>{}.support))); };
+  session->sum_order = SumOrder::of_one_process;
+  CHECK_THROWS_WITH_AS(free_body(body()), "Body \"slab\": each process has a part of its cloud; choose SumOrder::of_ranks.", ParameterError);
+  session->sum_order = SumOrder::of_ranks;
+  CHECK_THROWS_WITH_AS((Simulation{Bodies{body()}, Contacts{}, Boundaries{on<0>(SurfaceTension{})}, CentralDifference{}}),
+                       "Body \"slab\": each process has a part of its cloud; boundary terms need the whole, prescribed motions do not.", ParameterError);
+  CHECK_THROWS_WITH_AS((Simulation{Bodies{body(), slab(box(cube))}, Contacts{between<0, 1>(VanDerWaals{})}, Boundaries{}, CentralDifference{}}),
+                       "Body \"slab\": each process has a part of its cloud; contacts need the whole.", ParameterError);
+  auto simulation = free_body(body());
+  CHECK_THROWS_WITH_AS((void)save_state(simulation), "Body \"slab\": nobody has the whole of it, and its state cannot be saved or restored.", ParameterError);
+  // Parts of another division.
+  CHECK_THROWS_AS(slab(box_part(cube, {.rank = 0, .ranks = session->size(), .support = 2.0})), ParameterError);
+  CHECK_THROWS_AS(slab(box_part(cube, {.rank = session->rank(), .ranks = session->size() + 1, .support = 2.0})), ParameterError);
+  Box other = cube;
+  if (session->rank() == 1) other.cells[0] = 8;
+  CHECK_THROWS_WITH_AS(slab(box_part(other, part(2.0))), "Rank 1 has another cloud of which it has a part than rank 0: all ranks must run the same program with the same options.", ParameterError);
+  CHECK_THROWS_AS((Body{"slab", box_part(cube, part(2.0)), Rkpm<3>{}, GaussCells<2>{}, Materials{Region{"body", YangVisco<>{}}}}), ParameterError);
+  // Supports that are larger than the part was made for.
+  CHECK_THROWS_AS((Body{"slab", box_part({.size = Point<3>(8.0 * um, 0.5 * um, 0.5 * um), .cells = {56, 4, 4}}, part(0.6)), Rkpm<3>{.support = 3.0}, NodalCentroids{}, Materials{Region{"body", YangVisco<>{}}}}),
+                  ParameterError);
+}
+
+int main(int argc, char** argv) {
+  mpi::Session all(argc, argv);
+  session = &all;
+  session->sum_order = SumOrder::of_ranks;
+  doctest::Context context(argc, argv);
+  context.setOption("minimal", all.rank() != 0);
+  const int failed = context.run();
+  return static_cast<int>(all.largest(failed));
+}
