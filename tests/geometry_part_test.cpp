@@ -12,22 +12,24 @@ using namespace tactoid;
 
 /// What every division must have, of all parts of a cloud.
 template <int D, class MakePart>
-void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks, double support) {
+void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks, double support, bool surface = false) {
   CAPTURE(ranks);
+  CAPTURE(surface);
   const std::vector<NodalCell<D>> cells = nodal_cells(whole);
   const std::vector<double> volumes = nodal_volumes(whole), spacing = longest_edges(whole);
   const auto normals = boundary_normal_integrals(whole);
   std::vector<int> owner(whole.size(), -1);
   std::vector<PointCloud<D>> parts;
   for (int rank = 0; rank < ranks; ++rank) {
-    parts.push_back(make(Part{.rank = rank, .ranks = ranks, .support = support}));
+    parts.push_back(make(Part{.rank = rank, .ranks = ranks, .support = support, .surface = surface}));
     const PointCloud<D>& here = parts.back();
     CHECK_NOTHROW(validate(here));
     REQUIRE(here.part);
     CHECK(here.part->rank == rank);
     CHECK(here.part->ranks == ranks);
     CHECK(here.part->whole == whole.size());
-    for (std::size_t i = 0; i < here.part->own; ++i) {
+    CHECK(here.part->surface == surface);
+    for (const Index i : here.part->own) {
       CHECK(owner[here.number(i)] == -1);  // each particle belongs to one rank
       owner[here.number(i)] = rank;
     }
@@ -37,17 +39,17 @@ void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks,
   for (const PointCloud<D>& here : parts) {
     const CloudPart& part = *here.part;
     CAPTURE(part.rank);
-    CHECK(part.own + part.own / 2 + 2 >= whole.size() / static_cast<std::size_t>(ranks));
+    CHECK(part.own.size() + part.own.size() / 2 + 2 >= whole.size() / static_cast<std::size_t>(ranks));
     const std::vector<double> volumes_here = nodal_volumes(here), spacing_here = longest_edges(here);
     const auto normals_here = boundary_normal_integrals(here);
     std::vector<char> is_here(whole.size(), 0);
     std::size_t places = 0, owners = 0, off = 0;
     for (std::size_t i = 0; i < here.size(); ++i) {
       const std::size_t of_whole = here.number(i);
-      is_here[of_whole] = i < part.complete ? 2 : 1;
+      is_here[of_whole] = part.complete[i] ? 2 : 1;
       places += here.positions[i] != whole.positions[of_whole] ? 1 : 0;
       owners += part.owner[i] != owner[of_whole] ? 1 : 0;
-      if (i >= part.complete) continue;
+      if (!part.complete[i]) continue;
       off += std::abs(volumes_here[i] - volumes[of_whole]) > 1e-12 * volumes[of_whole] ? 1 : 0;
       off += spacing_here[i] != spacing[of_whole] ? 1 : 0;
       if constexpr (D > 1) off += (normals_here[i] - normals[of_whole]).norm() > 1e-12 ? 1 : 0;
@@ -55,9 +57,22 @@ void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks,
     CHECK(places == 0);
     CHECK(owners == 0);
     CHECK(off == 0);
+    if (surface) {  // on all ranks the same, particle by particle and facet by facet
+      CHECK(here.facets == parts.front().facets);
+      CHECK(here.facets.size() == whole.facets.size());
+      const std::vector<bool> on_facets = on_boundary(here), on_facets_of_whole = on_boundary(whole);
+      const auto n = static_cast<std::size_t>(std::count(on_facets_of_whole.begin(), on_facets_of_whole.end(), true));
+      CHECK(std::count(on_facets.begin(), on_facets.end(), true) == static_cast<std::ptrdiff_t>(n));
+      std::size_t others = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        others += on_facets[i] && here.number(i) == parts.front().number(i) ? 0 : 1;
+        if constexpr (D > 1) others += (normals_here[i] - normals[here.number(i)]).norm() < 1e-12 ? 0 : 1;
+      }
+      CHECK(others == 0);
+    }
     // Everything within two supports of an own particle is complete.
     std::size_t missing = 0;
-    for (std::size_t i = 0; i < part.own; ++i)
+    for (const Index i : part.own)
       for (std::size_t j = 0; j < whole.size(); ++j)
         if (whole.difference(here.positions[i], whole.positions[j]).norm() <= 2.0 * support * longest && is_here[j] != 2) ++missing;
     CHECK(missing == 0);
@@ -67,7 +82,7 @@ void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks,
 /// The box with its particles in rows, as box_part numbers them.
 PointCloud<3> in_rows(const Box& parameters) {
   PointCloud<3> cloud = box_part(parameters, {.rank = 0, .ranks = 1, .support = 2.0});
-  CHECK(cloud.part->own == cloud.size());
+  CHECK(cloud.part->own.size() == cloud.size());
   std::vector<Index> order(cloud.size());
   for (Index i = 0; i < cloud.size(); ++i) order[cloud.number(i)] = i;
   PointCloud<3> ordered = detail::kept_of(cloud, order);
@@ -84,9 +99,11 @@ PointCloud<3> in_rows(const Box& parameters) {
 
 TEST_CASE("Parts of a box that are made without the whole") {
   const Box wide{.size = Point<3>(3.0, 1.0, 1.5), .cells = {14, 5, 9}, .region = "gel"};
-  for (const int ranks : {1, 2, 3, 7}) check_division(in_rows(wide), [&](const Part& part) { return box_part(wide, part); }, ranks, 1.2);
+  for (const bool surface : {false, true})
+    for (const int ranks : {1, 2, 3, 7}) check_division(in_rows(wide), [&](const Part& part) { return box_part(wide, part); }, ranks, 1.2, surface);
   const Box around{.size = Point<3>(3.0, 0.5, 1.0), .cells = {30, 4, 4}, .periodic = {true, false, true}};
-  for (const int ranks : {1, 2, 5}) check_division(in_rows(around), [&](const Part& part) { return box_part(around, part); }, ranks, 1.1);
+  for (const bool surface : {false, true})
+    for (const int ranks : {1, 2, 5}) check_division(in_rows(around), [&](const Part& part) { return box_part(around, part); }, ranks, 1.1, surface);
   const PointCloud<3> one = box_part(wide, {.rank = 1, .ranks = 2, .support = 1.0});
   CHECK(one.regions == std::vector<std::string>{"gel"});
   CHECK(one.size() < 15 * 6 * 10);
@@ -97,12 +114,14 @@ TEST_CASE("Parts of a rectangle, periodic in one direction") {
   const PointCloud<2> rows = rectangle_part(strip, {.support = 2.0});
   std::vector<Index> order(rows.size());
   for (Index i = 0; i < rows.size(); ++i) order[rows.number(i)] = i;
-  for (const int ranks : {2, 3, 4}) check_division(detail::kept_of(rows, order), [&](const Part& part) { return rectangle_part(strip, part); }, ranks, 2.0);
+  for (const bool surface : {false, true})
+    for (const int ranks : {2, 3, 4}) check_division(detail::kept_of(rows, order), [&](const Part& part) { return rectangle_part(strip, part); }, ranks, 2.0, surface);
 }
 
 TEST_CASE("Parts of any cloud") {
   const PointCloud<3> round = ball({.radius = 1.0, .core_radius = 0.5, .core_cells = 4, .shells = 3});
-  for (const int ranks : {1, 2, 5}) check_division(round, [&](const Part& part) { return part_of(round, part); }, ranks, 1.3);
+  for (const bool surface : {false, true})
+    for (const int ranks : {1, 2, 5}) check_division(round, [&](const Part& part) { return part_of(round, part); }, ranks, 1.3, surface);
   const PointCloud<3> around = box({.size = Point<3>(3.0, 0.5, 1.0), .cells = {24, 4, 6}, .periodic = {true, false, false}});
   for (const int ranks : {2, 4}) check_division(around, [&](const Part& part) { return part_of(around, part); }, ranks, 1.2);
   const PointCloud<1> line = bar({.length = 1.0, .cells = 40});

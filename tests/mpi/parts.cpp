@@ -41,7 +41,7 @@ constexpr double um = 1e-6;
 
 mpi::Session* session = nullptr;
 
-[[nodiscard]] Part part(double support) { return {.rank = session->rank(), .ranks = session->size(), .support = support}; }
+[[nodiscard]] Part part(double support, bool surface = false) { return {.rank = session->rank(), .ranks = session->size(), .support = support, .surface = surface}; }
 
 /// What is compared: lists of numbers by name; of particles by their number in the whole.
 using Numbers = std::map<std::string, std::vector<double>>;
@@ -52,7 +52,8 @@ std::vector<double> of_particles(const Body& body, const Values& values) {
   const auto* part = body.cloud().part.get();
   std::vector<double> list;
   std::size_t width = 0;
-  for (std::size_t i = 0; i < (part != nullptr ? part->own : body.size()); ++i) {
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    if (part != nullptr && !part->is_own(i)) continue;
     list.push_back(static_cast<double>(body.cloud().number(i)));
     const auto x = values(i);
     width = static_cast<std::size_t>(x.size());
@@ -104,7 +105,7 @@ double difference(const std::vector<double>& a, const std::vector<double>& b) {
 
 /// Runs `compute(simulation)` on what `compose(cloud)` gives, of the whole cloud on rank 0 alone, and in parts, twice: the same but for `tolerance`; the second time to the bit.
 template <int D, class Compose, class Compute>
-void compare(const PointCloud<D>& cloud, double support, const Compose& compose, const Compute& compute, double tolerance = 1e-11) {
+void compare(const PointCloud<D>& cloud, const Part& wanted, const Compose& compose, const Compute& compute, double tolerance = 1e-11) {
   Numbers alone;
   if (session->rank() == 0) {
     Ranks::current = nullptr;
@@ -114,7 +115,7 @@ void compare(const PointCloud<D>& cloud, double support, const Compose& compose,
     Ranks::current = session;
   }
   const auto in_parts = [&] {
-    auto simulation = compose(part_of(cloud, part(support)));
+    auto simulation = compose(part_of(cloud, wanted));
     CHECK(simulation.template body<0>().in_parts() == (session->size() > 1));
     CHECK(simulation.template body<0>().size() == simulation.template body<0>().cloud().size());
     compute(simulation);
@@ -166,7 +167,7 @@ const Box cube{.size = Point<3>(1.0 * um, 1.0 * um, 1.0 * um), .cells = {7, 7, 7
 }  // namespace
 
 TEST_CASE("A free block") {
-  compare(jitter(box(cube), 0.1), Rkpm<3>{}.support, shaken_slab<3>, [](auto& simulation) {
+  compare(jitter(box(cube), 0.1), part(Rkpm<3>{}.support), shaken_slab<3>, [](auto& simulation) {
     const Vector3 before = motion<0>(simulation).momentum;
     take(simulation, 200);
     CHECK((motion<0>(simulation).momentum - before).norm() < 1e-11 * 1e3 * um * um * um * 20.0);
@@ -175,7 +176,7 @@ TEST_CASE("A free block") {
 
 TEST_CASE("A long bar, periodic, which no rank has whole") {
   const PointCloud<3> bar = jitter(box({.size = Point<3>(8.0 * um, 0.4 * um, 0.5 * um), .cells = {56, 3, 4}, .periodic = {true, false, false}}), 0.1);
-  compare(bar, Rkpm<3>{}.support, shaken_slab<3>, [](auto& simulation) {
+  compare(bar, part(Rkpm<3>{}.support), shaken_slab<3>, [](auto& simulation) {
     const auto& body = simulation.template body<0>();
     if (Ranks::current != nullptr && session->size() > 2) CHECK(body.size() < body.cloud().part->whole);
     take(simulation, 50);
@@ -185,7 +186,7 @@ TEST_CASE("A long bar, periodic, which no rank has whole") {
 TEST_CASE("A body so large that its gradients are made consistent with the help of smooth fields") {
   const PointCloud<3> cloud = jitter(box({.size = Point<3>(1.9 * um, 1.0 * um, 1.0 * um), .cells = {29, 14, 14}}), 0.1);
   CHECK(cloud.size() >= detail::particles_for_coarse_space);
-  compare(cloud, Rkpm<3>{}.support, [](const PointCloud<3>& here) {
+  compare(cloud, part(Rkpm<3>{}.support), [](const PointCloud<3>& here) {
     auto body = slab(here, 0);
     shake(body, 20.0);
     return free_body(std::move(body));
@@ -194,7 +195,7 @@ TEST_CASE("A body so large that its gradients are made consistent with the help 
 
 TEST_CASE("A graded plate that is pulled") {
   const PointCloud<2> cloud = rectangle({.size = {2.0 * um, 1.0 * um}, .cells = {16, 8}});
-  compare(cloud, Rkpm<2>{}.support, [](const PointCloud<2>& here) {
+  compare(cloud, part(Rkpm<2>{}.support), [](const PointCloud<2>& here) {
     const auto left = select(here, [](const Point<2>& X) { return X[0] < 1e-9; });
     const auto right = select(here, [](const Point<2>& X) { return X[0] > 1.999 * um; });
     Body body{"plate", here, Rkpm<2>{}, NodalCentroids{.points_per_chunk = 16},
@@ -218,20 +219,48 @@ TEST_CASE("A cell of two regions with a director, in the plane and in space") {
     shake(body, 0.5);
     return free_body(std::move(body));
   };
-  compare(ball({.radius = 5.0 * um, .core_radius = 2.0 * um, .core_cells = 4, .shells = 4}), Rkpm<3>{}.support, compose, [](auto& simulation) { take(simulation, 50); });
+  compare(ball({.radius = 5.0 * um, .core_radius = 2.0 * um, .core_cells = 4, .shells = 4}), part(Rkpm<3>{}.support), compose, [](auto& simulation) { take(simulation, 50); });
 }
 
 TEST_CASE("A ring about the axis") {
   const PointCloud<2> ring = meridian(Disc{.radius = 1.0 * um, .height = 0.5 * um, .core_cells = 8, .rings = 4, .layers = 6});
-  compare(ring, Rkpm<2>{}.support, [](const PointCloud<2>& here) {
+  compare(ring, part(Rkpm<2>{}.support), [](const PointCloud<2>& here) {
     Body body{"ring", here, Rkpm<2>{}, NodalCentroids{.points_per_chunk = 16}, Materials{Region{"body", NeoHookean::from_young(1e4, 0.3)}}};
     shake(body, 0.5);
     return free_body(std::move(body));
   }, [](auto& simulation) { take(simulation, 50); });
 }
 
+TEST_CASE("A block under surface tension and pressure, on a plate") {
+  compare(jitter(box(cube), 0.1), part(Rkpm<3>{}.support, true), [](const PointCloud<3>& here) {
+    auto body = slab(here);
+    shake(body, 20.0);
+    return Simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{on<0>(SurfaceTension{}), on<0>(CurvatureSurfaceTension{}), on<0>(AmbientPressure{.pressure = 300.0})},
+                      CentralDifference{.safety = 0.5}};
+  }, [](auto& simulation) {
+    take(simulation, 100);
+    CHECK(simulation.ledger().surface > 0.0);
+  });
+}
+
+TEST_CASE("A cell that sticks to a substrate of which each rank has a part") {
+  const PointCloud<3> ground = disc({.radius = 8.0 * um, .height = 3.0 * um, .core_cells = 4, .rings = 2, .layers = 4});
+  compare(ground, part(Rkpm<3>{}.support, true), [](const PointCloud<3>& here) {
+    const auto bottom = select(here, [](const Point<3>& X) { return X[2] < -2.99 * um; });
+    Body body{"cell", ball({.radius = 5.0 * um, .core_radius = 2.0 * um, .core_cells = 4, .shells = 4, .center = {0.0, 0.0, 5.15 * um}}), Rkpm<3>{}, NodalCentroids{.points_per_chunk = 16},
+              Materials{Region{"nucleus", ModifiedMooneyRivlin{}}, Region{"cytoplasm", NematicGel<>{}}}, DirectorField<>{}, RandomDirector{{.correlation_length = 2.0 * um, .seed = 2}}};
+    return Simulation{Bodies{slab(here), std::move(body)}, Contacts{between<1, 0>(LigandReceptor{}), between<1, 0>(VanDerWaals{})},
+                      Boundaries{on<1>(SurfaceTension{}), on<0>(fixed(bottom))}, CentralDifference{}};
+  }, [](auto& simulation) {
+    take(simulation, 80);
+    const auto gaps = simulation.template contact<1>().gaps();
+    CHECK(*std::min_element(gaps.begin(), gaps.end()) < 0.1 * um);  // they touch
+    CHECK(simulation.ledger().adhesion != 0.0);
+  });
+}
+
 TEST_CASE("Gradients in single precision, and steps of its own") {
-  compare(jitter(box(cube), 0.1), Rkpm<3>{}.support, [](const PointCloud<3>& here) {
+  compare(jitter(box(cube), 0.1), part(Rkpm<3>{}.support), [](const PointCloud<3>& here) {
     Body body{"block", here, Rkpm<3>{}, stored_as<float>(NodalCentroids{.points_per_chunk = 24}), Materials{Region{"body", YangVisco<>{}}}};
     shake(body, 20.0);
     return Simulation{Bodies{std::move(body)}, Contacts{}, Boundaries{}, SubcycledCentralDifference{CentralDifference{.safety = 0.5}, 4}};
@@ -313,9 +342,11 @@ TEST_CASE("What needs the whole is refused, on all ranks") {
   CHECK_THROWS_WITH_AS(free_body(body()), "Body \"slab\": each process has a part of its cloud; choose SumOrder::of_ranks.", ParameterError);
   session->sum_order = SumOrder::of_ranks;
   CHECK_THROWS_WITH_AS((Simulation{Bodies{body()}, Contacts{}, Boundaries{on<0>(SurfaceTension{})}, CentralDifference{}}),
-                       "Body \"slab\": each process has a part of its cloud; boundary terms need the whole, prescribed motions do not.", ParameterError);
+                       "Body \"slab\": each process has a part of its cloud; boundary term number 0 needs all facets (Part::surface).", ParameterError);
   CHECK_THROWS_WITH_AS((Simulation{Bodies{body(), slab(box(cube))}, Contacts{between<0, 1>(VanDerWaals{})}, Boundaries{}, CentralDifference{}}),
-                       "Body \"slab\": each process has a part of its cloud; contacts need the whole.", ParameterError);
+                       "Body \"slab\": each process has a part of its cloud; contact number 0 may read all of its particles.", ParameterError);
+  CHECK_THROWS_WITH_AS((Simulation{Bodies{slab(box(cube)), body()}, Contacts{between<0, 1>(VanDerWaals{})}, Boundaries{}, CentralDifference{}}),
+                       "Body \"slab\": each process has a part of its cloud; contact number 0 needs all facets (Part::surface).", ParameterError);
   auto simulation = free_body(body());
   CHECK_THROWS_WITH_AS((void)save_state(simulation), "Body \"slab\": nobody has the whole of it, and its state cannot be saved or restored.", ParameterError);
   // Parts of another division.

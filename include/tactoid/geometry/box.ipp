@@ -105,6 +105,46 @@ PointCloud<D> brick(const Point<D>& size, const std::array<int, static_cast<std:
   return morton_ordered(grid<D>(grid_axes<D>(size, cells, periodic, origin), region));
 }
 
+/// Whether all nodes of a facet lie on one side of a grid.
+template <int D, class Facet, class NodeOf>
+[[nodiscard]] bool is_on_one_side(const GridAxes<D>& axes, const Facet& facet, const NodeOf& node) {
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    for (const std::size_t side : {std::size_t{0}, std::size_t{axes[k].nodes.back()}})
+      if (!axes[k].periodic && std::all_of(facet.begin(), facet.end(), [&](Index i) { return node(i)[k] == side; })) return true;
+  return false;
+}
+
+/// The facets of a grid, oriented outwards, made without its cells; `number` of a node.
+template <int D, class Number>
+[[nodiscard]] std::vector<typename PointCloud<D>::Facet> grid_sides(const GridAxes<D>& axes, const Number& number) {
+  std::vector<typename PointCloud<D>::Facet> facets;
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    if (axes[k].periodic) continue;
+    for (const bool upper : {false, true}) {
+      // A layer of cells on the side has it as one of its sides.
+      GridAxes<D> layer = axes;
+      const std::size_t n = axes[k].nodes.size();
+      layer[k].nodes = {axes[k].nodes[upper ? n - 2 : 0], axes[k].nodes[upper ? n - 1 : 1]};
+      const PointCloud<D> cells = grid<D>(layer, "");
+      const auto node = [&](Index i) {
+        std::array<std::size_t, static_cast<std::size_t>(D)> of_whole{};
+        for (std::size_t l = 0; l < layer.size(); ++l) {
+          of_whole[l] = layer[l].nodes[i % layer[l].nodes.size()];
+          i = static_cast<Index>(i / layer[l].nodes.size());
+        }
+        return of_whole;
+      };
+      for (auto facet : cells.facets) {
+        const std::size_t side = axes[k].nodes[upper ? n - 1 : 0];
+        if (!std::all_of(facet.begin(), facet.end(), [&](Index i) { return node(i)[k] == side; })) continue;
+        for (Index& i : facet) i = number(node(i));
+        facets.push_back(facet);
+      }
+    }
+  }
+  return facets;
+}
+
 /// The nodes of a grid divided among ranks: bricks, by recursive bisection along the longest direction.
 template <int D>
 class GridDivision {
@@ -196,43 +236,90 @@ PointCloud<D> brick_part(const Point<D>& size, const std::array<int, static_cast
   }
   PointCloud<D> piece = grid<D>(here, region);
 
-  std::vector<Node> node(piece.size());  // of each particle, in the whole
-  std::array<std::vector<Index>, 3> kind;  // own, complete, beyond
+  CloudPart made{.rank = part.rank, .ranks = part.ranks, .whole = static_cast<std::size_t>(count), .surface = part.surface, .number = {}, .owner = {}, .complete = {}, .own = {}};
+  const auto number = [&](const Node& node) {
+    std::size_t n = 0;
+    for (std::size_t k = whole.size(); k-- > 0;) n = n * whole[k].nodes.size() + node[k];
+    return static_cast<Index>(n);
+  };
+  const auto node = [&](Index n) {
+    Node of_whole;
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      of_whole[k] = n % whole[k].nodes.size();
+      n = static_cast<Index>(n / whole[k].nodes.size());
+    }
+    return of_whole;
+  };
+  const auto is_on_side = [&](const Node& of_whole) {
+    for (std::size_t k = 0; k < whole.size(); ++k)
+      if (!whole[k].periodic && (of_whole[k] == 0 || of_whole[k] == whole[k].nodes.back())) return true;
+    return false;
+  };
+
+  // The piece in numbers of the whole.
+  std::vector<Index> in_whole(piece.size());
+  std::vector<char> is_complete(piece.size(), 1);
+  std::array<std::vector<Index>, 4> groups;  // of numbers in the whole: on the surface of the whole, own, complete, beyond
   for (Index i = 0; i < piece.size(); ++i) {
+    Node of_whole;
     std::size_t rest = i;
-    bool is_own = true, is_complete = true;
+    bool is_own = true;
     for (std::size_t k = 0; k < here.size(); ++k) {
       const std::size_t along = rest % here[k].nodes.size();
       rest /= here[k].nodes.size();
-      node[i][k] = here[k].nodes[along];
-      is_own = is_own && node[i][k] >= own.first[k] && node[i][k] < own.last[k];
-      is_complete = is_complete && complete[k][along];
+      of_whole[k] = here[k].nodes[along];
+      is_own = is_own && of_whole[k] >= own.first[k] && of_whole[k] < own.last[k];
+      if (!complete[k][along]) is_complete[i] = 0;
     }
-    kind[is_own ? 0 : is_complete ? 1 : 2].push_back(i);
+    in_whole[i] = number(of_whole);
+    if (!part.surface || !is_on_side(of_whole)) groups[is_own ? 1 : is_complete[i] ? 2 : 3].push_back(in_whole[i]);
   }
-  // Sides on which the piece is cut are no facets.
-  std::erase_if(piece.facets, [&](const auto& facet) {
-    for (std::size_t k = 0; k < whole.size(); ++k)
-      for (const std::size_t side : {std::size_t{0}, std::size_t{whole[k].nodes.back()}})
-        if (!whole[k].periodic && std::all_of(facet.begin(), facet.end(), [&](Index i) { return node[i][k] == side; })) return false;
-    return true;
-  });
+  std::vector<typename PointCloud<D>::Facet> facets = part.surface ? grid_sides<D>(whole, number) : piece.facets;
+  if (part.surface) {
+    for (const auto& facet : facets) groups[0].insert(groups[0].end(), facet.begin(), facet.end());
+    std::sort(groups[0].begin(), groups[0].end());
+    groups[0].erase(std::unique(groups[0].begin(), groups[0].end()), groups[0].end());
+  } else {  // the sides on which the piece is cut are no facets
+    for (auto& facet : facets)
+      for (Index& i : facet) i = in_whole[i];
+    std::erase_if(facets, [&](const auto& facet) { return !is_on_one_side<D>(whole, facet, node); });
+  }
 
-  CloudPart made{.rank = part.rank, .ranks = part.ranks, .whole = static_cast<std::size_t>(count), .own = kind[0].size(), .complete = kind[0].size() + kind[1].size(), .number = {}, .owner = {}};
-  std::vector<Index> kept;
-  kept.reserve(piece.size());
-  for (const std::vector<Index>& list : kind) {
-    std::vector<Point<D>> places;
-    for (const Index i : list) places.push_back(piece.positions[i]);
-    for (const Index k : morton_order<D>(places)) kept.push_back(list[k]);
+  // Particles group by group, each along a curve.
+  PointCloud<D> result;
+  result.regions = piece.regions;
+  result.period = piece.period;
+  std::vector<std::pair<Index, Index>> places;  // number in the whole, place in the result
+  std::vector<std::pair<Index, char>> completes;
+  for (Index i = 0; i < piece.size(); ++i) completes.emplace_back(in_whole[i], is_complete[i]);
+  std::sort(completes.begin(), completes.end());
+  for (const std::vector<Index>& group : groups) {
+    std::vector<Point<D>> positions;
+    for (const Index n : group) {
+      const Node of_whole = node(n);
+      Point<D> x;
+      for (std::size_t k = 0; k < whole.size(); ++k) x[static_cast<int>(k)] = whole[k].place(of_whole[k]);
+      positions.push_back(x);
+    }
+    for (const Index k : morton_order<D>(positions)) {
+      const Index n = group[k];
+      const auto at = std::lower_bound(completes.begin(), completes.end(), std::pair(n, char{0}));
+      places.emplace_back(n, static_cast<Index>(result.positions.size()));
+      result.positions.push_back(positions[k]);
+      made.add(n, division.owner(node(n)), at != completes.end() && at->first == n && at->second != 0);
+    }
   }
-  for (const Index i : kept) {
-    std::size_t number = 0;
-    for (std::size_t k = whole.size(); k-- > 0;) number = number * whole[k].nodes.size() + node[i][k];
-    made.number.push_back(static_cast<Index>(number));
-    made.owner.push_back(division.owner(node[i]));
+  std::sort(places.begin(), places.end());
+  const auto renumbered = [&](auto entity) {
+    for (Index& i : entity) i = std::lower_bound(places.begin(), places.end(), std::pair(i, Index{0}))->second;
+    return entity;
+  };
+  for (auto cell : piece.cells) {
+    for (Index& i : cell) i = in_whole[i];
+    result.cells.push_back(renumbered(cell));
   }
-  PointCloud<D> result = kept_of(piece, kept);
+  result.cell_regions = std::move(piece.cell_regions);
+  for (const auto& facet : facets) result.facets.push_back(renumbered(facet));
   result.part = std::make_shared<const CloudPart>(std::move(made));
   return result;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/geometry/facets.hpp>
 #include <tactoid/geometry/measures.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
 
@@ -23,6 +24,7 @@ struct Part {
   int rank = 0;           ///< in [0, ranks)
   int ranks = 1;          ///< >= 1
   double support = 0.0;   ///< of the kernel, in spacings, > 0
+  bool surface = false;   ///< with all facets and the particles on them: for a body that takes part in contacts, or in boundary terms other than prescribed motions
   void validate() const;  ///< throws ParameterError for a value that is not in its range
 };
 

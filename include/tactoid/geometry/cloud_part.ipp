@@ -79,21 +79,22 @@ PointCloud<D> part_of(const PointCloud<D>& cloud, const Part& part) {
   const auto within = [&](Index i) {
     return ((cloud.difference(middle, cloud.positions[i]).cwiseAbs() - half).array() <= reach).all();
   };
-  std::vector<char> kind(cloud.size(), 0);  // 1: own, 2: complete, 3: beyond
+  std::vector<char> kind(cloud.size(), 0);  // 1: own, 2: complete, 3: beyond; 0: not here, but for its being on a facet
   for (Index i = 0; i < cloud.size(); ++i) kind[i] = owner[i] == part.rank ? 1 : within(i) ? 2 : 0;
   for (const auto& cell : cloud.cells)
     if (std::any_of(cell.begin(), cell.end(), [&](Index i) { return kind[i] == 1 || kind[i] == 2; }))
       for (const Index i : cell)
         if (kind[i] == 0) kind[i] = 3;
 
-  CloudPart made{.rank = part.rank, .ranks = part.ranks, .whole = cloud.size(), .own = 0, .complete = 0, .number = {}, .owner = {}};
-  for (const int k : {1, 2, 3}) {
+  CloudPart made{.rank = part.rank, .ranks = part.ranks, .whole = cloud.size(), .surface = part.surface, .number = {}, .owner = {}, .complete = {}, .own = {}};
+  const auto take = [&](const auto& which) {
     for (Index i = 0; i < cloud.size(); ++i)
-      if (kind[i] == k) made.number.push_back(i);
-    if (k == 1) made.own = made.number.size();
-    if (k == 2) made.complete = made.number.size();
-  }
-  for (const Index i : made.number) made.owner.push_back(owner[i]);
+      if (which(i)) made.add(i, owner[i], kind[i] == 1 || kind[i] == 2);
+  };
+  std::vector<bool> first(cloud.size(), false);
+  if (part.surface) first = on_boundary(cloud);
+  take([&](Index i) { return first[i]; });
+  for (const int k : {1, 2, 3}) take([&](Index i) { return !first[i] && kind[i] == k; });
   PointCloud<D> result = detail::kept_of(cloud, made.number);
   result.part = std::make_shared<const CloudPart>(std::move(made));
   return result;

@@ -12,16 +12,25 @@
 
 namespace tactoid {
 
-/// What of a cloud one of several processes (ranks) has: the particles that belong to it, and around them what its rows may touch (cloud_part.hpp). Particles are numbered anew:
-/// first those that belong to the rank, then the others that have all their cells here, then what these cells have beyond.
+/// What of a cloud one of several processes (ranks) has: the particles that belong to it, and around them what its rows may touch (cloud_part.hpp). Particles are numbered anew.
 struct CloudPart {
-  int rank = 0;               ///< whose part it is
-  int ranks = 1;              ///< how many have parts
-  std::size_t whole = 0;      ///< particles of the whole cloud
-  std::size_t own = 0;        ///< particles [0, own) belong to the rank
-  std::size_t complete = 0;   ///< particles [0, complete) have all their cells here
-  std::vector<Index> number;  ///< per particle: its number in the whole cloud
-  std::vector<int> owner;     ///< per particle: the rank to which it belongs
+  int rank = 0;                ///< whose part it is
+  int ranks = 1;               ///< how many have parts
+  std::size_t whole = 0;       ///< particles of the whole cloud
+  bool surface = false;        ///< every rank has all particles on facets, as its first ones and in the same order, and all facets
+  std::vector<Index> number;   ///< per particle: its number in the whole cloud
+  std::vector<int> owner;      ///< per particle: the rank to which it belongs
+  std::vector<char> complete;  ///< per particle: 1 where all its cells are here
+  std::vector<Index> own;      ///< particles that belong to this rank, ascending
+
+  [[nodiscard]] bool is_own(std::size_t i) const { return owner[i] == rank; }  ///< particle i belongs to this rank
+  /// One more particle.
+  void add(Index number_in_whole, int rank_of, bool has_all_cells) {
+    if (rank_of == rank) own.push_back(static_cast<Index>(number.size()));
+    number.push_back(number_in_whole);
+    owner.push_back(rank_of);
+    complete.push_back(has_all_cells ? 1 : 0);
+  }
 };
 
 /// Particles of one body in its reference configuration, with the background cells that give them volumes,

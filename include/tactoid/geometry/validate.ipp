@@ -20,8 +20,8 @@ void validate(const PointCloud<D>& cloud) {
   if (cloud.positions.empty()) throw GeometryError("The point cloud has no particles.");
   if (cloud.cells.empty()) throw GeometryError("The point cloud has no cells.");
   if (const CloudPart* part = cloud.part.get())
-    if (part->number.size() != cloud.size() || part->owner.size() != cloud.size() || part->own > part->complete || part->complete > cloud.size())
-      throw GeometryError(fmt::format("The cloud has {} particles, but is said to be a part of {} ones, {} of them own and {} complete.", cloud.size(), part->number.size(), part->own, part->complete));
+    if (part->number.size() != cloud.size() || part->owner.size() != cloud.size() || part->complete.size() != cloud.size())
+      throw GeometryError(fmt::format("The cloud has {} particles, but is said to be a part of {} ones.", cloud.size(), part->number.size()));
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (!cloud.positions[i].allFinite())
       throw GeometryError(
@@ -89,7 +89,7 @@ void validate(const PointCloud<D>& cloud) {
         throw GeometryError(
             fmt::format("Facet {} uses particle {}, but there are only {} particles.", f, i, cloud.size()));
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (!used[i])
+    if (!used[i] && (!cloud.part || cloud.part->complete[i]))
       throw GeometryError(
           fmt::format("Particle {} at {} belongs to no cell: it has no volume.", i, describe<D>(cloud.positions[i])));
 }

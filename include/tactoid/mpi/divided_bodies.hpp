@@ -41,7 +41,7 @@ class DividedBodies final : public Decomposition {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const PointTable& table = *bodies_[b].table;
       if (const RowShare* made = bodies_[b].made; made != nullptr) {
-        parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], made->chunk_owner, made->particle_owner, made->part));
+        parts_.push_back(std::make_shared<PartOfBody>(comm_, ranks_.sum_order, bodies_[b], made->chunk_owner, made->particle_owner, bodies_[b].part));
       } else {
         const auto begin = std::exchange(next, next + static_cast<std::ptrdiff_t>(table.chunks.size()));
         const std::vector<int> of_chunks(begin, next);
@@ -73,7 +73,7 @@ class DividedBodies final : public Decomposition {
     exchanging_ = false;
   }
   void complete() override {
-    if (!whole_) whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::whole, [](const SharedBody&, Index) { return true; }));
+    if (!whole_) whole_ = std::make_unique<ParcelsToAll>(comm_, parcels_of_owners(&SharedBody::whole, [](const SharedBody& body, Index) { return body.part == nullptr; }));
     whole_->begin();
     whole_->end();
     for (std::size_t b = 0; b < bodies_.size(); ++b)
@@ -99,8 +99,8 @@ class DividedBodies final : public Decomposition {
   void require_same_bodies() {
     Fingerprint fingerprint;
     for (const SharedBody& body : bodies_) {
-      if (body.made != nullptr && body.made->part) {
-        fingerprint.add(std::uint64_t{body.made->part->whole});
+      if (body.part) {
+        fingerprint.add(std::uint64_t{body.part->whole});
         continue;
       }
       fingerprint.add(std::uint64_t{body.table->particles});
@@ -115,14 +115,14 @@ class DividedBodies final : public Decomposition {
     }
     ranks_.require_same("simulation", fingerprint.text());
   }
-  /// For each rank the particles that it owns, of those that are included.
+  /// For each rank the particles that it owns, of those that are included; of a body in parts these must be the same on all ranks, in the same order.
   template <class Include>
   [[nodiscard]] std::vector<Parcel> parcels_of_owners(std::vector<Field*> SharedBody::*fields, const Include& include) const {
     std::vector<Parcel> parcels(static_cast<std::size_t>(ranks_.size()));
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       for (Parcel& parcel : parcels) parcel.pieces.push_back({bodies_[b].*fields, {}});
       for (Index i = 0; i < bodies_[b].table->particles; ++i)
-        if (!parts_[b]->part && include(bodies_[b], i)) parcels[static_cast<std::size_t>(parts_[b]->particle_owner[i])].pieces.back().particles.push_back(i);
+        if (include(bodies_[b], i)) parcels[static_cast<std::size_t>(parts_[b]->particle_owner[i])].pieces.back().particles.push_back(i);
     }
     return parcels;
   }

@@ -90,8 +90,7 @@ class PartOfBody final : public BodyShare {
     for (auto& list : lists)
       for (Index& i : list) i = part->number[i];
     lists = exchange_lists(ranks_, lists);
-    std::vector<Index> by_number(part->own);  // own particles by their number in the whole
-    std::iota(by_number.begin(), by_number.end(), Index{0});
+    std::vector<Index> by_number = part->own;
     std::sort(by_number.begin(), by_number.end(), [&](Index a, Index b) { return part->number[a] < part->number[b]; });
     for (auto& list : lists)
       for (Index& i : list) {
@@ -131,10 +130,14 @@ class PartOfBody final : public BodyShare {
   }
   void complete(std::span<double> values) override {
     if (!part) return OwnedValues(ranks_, particle_owner).gather(values, 1);
+    std::vector<std::vector<Index>> asked = lists();
+    for (Index i = 0; i < values.size(); ++i)
+      if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
+    ParcelsToNeighbors copies(ranks_, parcels_of(1, named_by_others(asked)), parcels_of(1, asked));
     Field field(values.size(), Vector4::Zero());
     for (const Index i : own) field[i][0] = values[i];
-    exchange(field);
-    for (const Index i : here) values[i] = field[i][0];
+    send(copies, field);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = field[i][0];
   }
   [[nodiscard]] bool sums(std::size_t p) const override { return summing_[p] == rank_; }
   void bring_to_parts(Field& field) override {

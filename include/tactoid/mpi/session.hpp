@@ -101,7 +101,7 @@ class Session final : public Ranks {
   }
   [[nodiscard]] std::shared_ptr<RowShare> share_of(const PointTable& table, std::shared_ptr<const CloudPart> part) override {
     std::vector<int> owner;
-    for (const PointChunk& chunk : table.chunks) owner.push_back(table.owner[chunk.begin] < part->own ? rank_ : -1);
+    for (const PointChunk& chunk : table.chunks) owner.push_back(part->is_own(table.owner[chunk.begin]) ? rank_ : -1);
     std::vector<int> of_particles = part->owner;
     return std::make_shared<PartOfBody>(ranks_, table, std::move(owner), std::move(of_particles), std::move(part));
   }

@@ -33,8 +33,9 @@ struct Motion {
 
 namespace detail {
 
-/// Of the whole body, from those of the particles that each process has of it. Collective.
-[[nodiscard]] Motion summed(const Motion& own, RowShare& share);
+/// The same of the particles that belong to each of several processes, together. Collective.
+[[nodiscard]] Motion motion_of_own(std::span<const double> mass, std::span<const Vector4> reference, std::span<const Vector4> displacement,
+                                   std::span<const Vector4> velocity, RowShare& share);
 
 }  // namespace detail
 
@@ -43,10 +44,8 @@ template <std::size_t N, class S>
 [[nodiscard]] Motion motion(const S& simulation) {
   const auto& body = simulation.template body<N>();
   const Field velocity = simulation.template velocity<N>();
-  const std::size_t n = body.in_parts() ? body.cloud().part->own : body.size();
-  const auto first = [n](const auto& values) { return std::span(values).first(n); };
-  Motion m = motion(first(body.masses()), first(body.reference()), first(body.displacement), first(velocity));
-  if (body.in_parts()) m = detail::summed(m, *body.share());
+  Motion m = body.in_parts() ? detail::motion_of_own(body.masses(), body.reference(), body.displacement, velocity, *body.share())
+                             : motion(body.masses(), body.reference(), body.displacement, velocity);
   if (body.table().axisymmetric) {
     m.momentum[0] = m.center_of_mass[0] = 0.0;
     m.angular_momentum.setZero();

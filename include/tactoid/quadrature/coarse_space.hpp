@@ -106,8 +106,8 @@ class CoarseCorrection {
   static constexpr double regularization = 1e-6;  // of E, over its diagonal: affine functions are in its null space
 
   [[nodiscard]] bool in_parts() const { return share_ != nullptr && share_->part; }
-  /// Particle k of those that are summed here, in their order; all of them unless they are in parts.
-  [[nodiscard]] std::size_t summed() const { return in_parts() ? share_->part->own : table_.particles; }
+  /// Particles that are added up here: all of them, unless they are in parts.
+  [[nodiscard]] OwnParticles summed() const { return {in_parts() ? share_ : nullptr, table_.particles}; }
   void add_up(Couplings& E) const;
   void take_off_affine();
   void find_parts();

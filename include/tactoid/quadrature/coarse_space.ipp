@@ -86,8 +86,8 @@ TACTOID_INLINE void CoarseCorrection::add_up(Couplings& E) const {
 TACTOID_INLINE void CoarseCorrection::find_parts() {
   std::vector<std::vector<int>> places(sum_parts, std::vector<int>(space_.size(), -1));
   parallel_for(sum_parts, [&](std::size_t p) {
-    const auto [first, last] = sum_part(summed(), p);
-    for (std::size_t i = first; i < last; ++i) space_.for_each(splines(i), [&](std::size_t node, double) { places[p][node] = 0; });
+    const auto [first, last] = sum_part(summed().size(), p);
+    for (std::size_t k = first; k < last; ++k) space_.for_each(splines(summed()[k]), [&](std::size_t node, double) { places[p][node] = 0; });
   });
   part_offsets_.assign(1, 0);
   part_places_.resize(sum_parts);
@@ -109,9 +109,12 @@ TACTOID_INLINE void CoarseCorrection::add(Field& r, Field& z) {
   parallel_for(sum_parts, [&](std::size_t p) {
     std::fill(part_sums_.begin() + static_cast<std::ptrdiff_t>(part_offsets_[p]), part_sums_.begin() + static_cast<std::ptrdiff_t>(part_offsets_[p + 1]), Vector4::Zero());
     if (part_places_[p].empty()) return;
-    const auto [first, last] = sum_part(summed(), p);
-    for (std::size_t i = first; i < last; ++i)
+    const OwnParticles particles = summed();
+    const auto [first, last] = sum_part(particles.size(), p);
+    for (std::size_t k = first; k < last; ++k) {
+      const std::size_t i = particles[k];
       space_.for_each(splines(i), [&](std::size_t node, double value) { part_sums_[static_cast<std::size_t>(part_places_[p][node])] += value * r[i]; });
+    }
   });
   if (together) share_->combine({part_sums_[0].data(), 4 * part_sums_.size()});
   std::fill(coarse_.begin(), coarse_.end(), Vector4::Zero());

@@ -9,13 +9,14 @@
 
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
+#include <tactoid/geometry/point_cloud.hpp>
 #include <tactoid/quadrature/point_table.hpp>
 
 namespace tactoid {
 
 /// Cuts the points of a table, which must be sorted by region, into chunks of one region and at most `points_per_chunk` points. 0 chooses: large chunks,
-/// whose points share most of their particles, where there are enough of them to keep several threads busy. Points of particles below `own` and others are in different chunks.
-void cut_chunks(PointTable& table, std::size_t points_per_chunk, std::size_t own = 0);
+/// whose points share most of their particles, where there are enough of them to keep several threads busy. Where the cloud is a part of a whole, points of own particles and others are in different chunks.
+void cut_chunks(PointTable& table, std::size_t points_per_chunk, const CloudPart* part = nullptr);
 
 /// The particles that the rows of chunk c, as cut_chunks() numbered them, touch; some of them several times. Valid until the next call.
 using TouchedBy = std::function<std::span<const Index>(std::size_t c)>;
@@ -27,7 +28,7 @@ using TouchedBy = std::function<std::span<const Index>(std::size_t c)>;
 std::vector<std::size_t> color_chunks(PointTable& table, const TouchedBy& touched);
 
 /// Cuts the points of a table into chunks, and colours these by its rows.
-void color_chunks(PointTable& table, std::size_t points_per_chunk, std::size_t own = 0);
+void color_chunks(PointTable& table, std::size_t points_per_chunk, const CloudPart* part = nullptr);
 
 /// Calls body(chunk, number of the chunk) for every chunk, colour after colour, on all threads.
 template <class Body>

@@ -5,14 +5,15 @@
 
 namespace tactoid {
 
-TACTOID_INLINE void cut_chunks(PointTable& table, std::size_t points_per_chunk, std::size_t own) {
+TACTOID_INLINE void cut_chunks(PointTable& table, std::size_t points_per_chunk, const CloudPart* part) {
   if (points_per_chunk == 0) points_per_chunk = std::clamp<std::size_t>(table.points() / 64, 64, 2048);
   points_per_chunk = std::max<std::size_t>(8, points_per_chunk / 8 * 8);  // whole blocks of lanes
 
   table.chunks.clear();
   for (std::size_t q = 0; q < table.points();) {
     std::size_t end = q;
-    const auto is_alike = [&](std::size_t p) { return table.region[p] == table.region[q] && (table.owner[p] < own) == (table.owner[q] < own); };
+    const auto is_own = [&](std::size_t p) { return part == nullptr || part->is_own(table.owner[p]); };
+    const auto is_alike = [&](std::size_t p) { return table.region[p] == table.region[q] && is_own(p) == is_own(q); };
     while (end < table.points() && end - q < points_per_chunk && is_alike(end)) ++end;
     table.chunks.push_back({q, end, table.region[q]});
     q = end;
@@ -54,8 +55,8 @@ TACTOID_INLINE std::vector<std::size_t> color_chunks(PointTable& table, const To
   return order;
 }
 
-TACTOID_INLINE void color_chunks(PointTable& table, std::size_t points_per_chunk, std::size_t own) {
-  cut_chunks(table, points_per_chunk, own);
+TACTOID_INLINE void color_chunks(PointTable& table, std::size_t points_per_chunk, const CloudPart* part) {
+  cut_chunks(table, points_per_chunk, part);
   const std::vector<PointChunk> chunks = table.chunks;
   std::vector<Index> particles;
   color_chunks(table, [&](std::size_t c) -> std::span<const Index> {

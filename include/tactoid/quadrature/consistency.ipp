@@ -142,7 +142,7 @@ TACTOID_INLINE ConsistencyReport make_consistent(PointTable& table, std::vector<
     const bool in_parts = share != nullptr && share->part;
     std::vector<Index> points;  // that this process evaluates for all
     for (Index q = 0; q < table.points(); ++q)
-      if (!in_parts || table.owner[q] < share->part->own) points.push_back(q);
+      if (!in_parts || share->part->is_own(table.owner[q])) points.push_back(q);
     const std::size_t step = detail::sampling_step(in_parts ? static_cast<std::size_t>(share->sum(static_cast<double>(points.size()))) : points.size());
     if (shared == nullptr || in_parts) {
       coarse.emplace(table, Samples{S, table, detail::every(step, points), static_cast<double>(step)}, share);

@@ -117,8 +117,8 @@ TACTOID_INLINE RowsToMake DividedBuild::rows_of(const PointTable& table, const C
     const NeighborTable near = find(points);
     for (const Index q : points) {
       const auto row = near.row(q);
-      if (table.owner[q] >= part.own && (row.empty() || row.front() >= part.own)) continue;  // rows are ascending
-      if (!row.empty() && row.back() >= part.complete)
+      if (!part.is_own(table.owner[q]) && std::none_of(row.begin(), row.end(), [&](Index i) { return part.is_own(i); })) continue;
+      if (!std::all_of(row.begin(), row.end(), [&](Index i) { return part.complete[i] != 0; }))
         throw ParameterError(fmt::format("The row of the point of particle {} needs particles that rank {} has not: make its part of the cloud for a larger support (Part::support).",
                                          part.number[table.owner[q]], part.rank));
       rows.add(q, row);
@@ -128,7 +128,7 @@ TACTOID_INLINE RowsToMake DividedBuild::rows_of(const PointTable& table, const C
 }
 
 TACTOID_INLINE void DividedBuild::share_part(PointTable& table, std::shared_ptr<const CloudPart> part, std::size_t points_per_chunk) {
-  color_chunks(table, points_per_chunk, part->own);
+  color_chunks(table, points_per_chunk, part.get());
   share_ = ranks_.share_of(table, std::move(part));
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -69,9 +70,11 @@ struct NodalCentroids {
   [[nodiscard]] PointTable build(const PointCloud<K::dimension>& cloud, const K& kernel, DividedBuild* divided = nullptr) const {
     validate();
     std::vector<NodalCell<K::dimension>> cells = nodal_cells(cloud);
-    if (cloud.part) std::erase_if(cells, [&](const auto& cell) { return cell.particle >= cloud.part->complete; });
-    std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.region, a.particle) < std::pair(b.region, b.particle);
+    const CloudPart* const part = cloud.part.get();  // own points come first in each region, and particles that lack cells have none
+    if (part != nullptr) std::erase_if(cells, [&](const auto& cell) { return !part->complete[cell.particle]; });
+    std::sort(cells.begin(), cells.end(), [&](const auto& a, const auto& b) {
+      const auto place = [&](const auto& cell) { return std::tuple(cell.region, part != nullptr && !part->is_own(cell.particle), cell.particle); };
+      return place(a) < place(b);
     });
     return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, longest_edges(cloud), false, divided);
   }

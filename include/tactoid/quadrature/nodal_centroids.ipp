@@ -47,9 +47,12 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
   std::vector<double> supports = spacing;
   for (double& radius : supports) radius *= support;
   // Beyond the complete particles of a part supports are not known: as large as any, they tell where a row would need them.
-  if (cloud.part && !supports.empty()) {
-    const auto beyond = supports.begin() + static_cast<std::ptrdiff_t>(cloud.part->complete);
-    std::fill(beyond, supports.end(), *std::max_element(supports.begin(), beyond));
+  if (cloud.part) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < supports.size(); ++i)
+      if (cloud.part->complete[i]) most = std::max(most, supports[i]);
+    for (std::size_t i = 0; i < supports.size(); ++i)
+      if (!cloud.part->complete[i]) supports[i] = most;
   }
 
   PointTable table = empty_table(cloud);

@@ -37,15 +37,13 @@ class RowShare {
   std::vector<Index> own;           ///< particles of this rank, ascending
   std::vector<Index> here;          ///< those, and what the rows that are here touch; ascending
 
-  /// Number of particle i in the whole body.
-  [[nodiscard]] std::size_t number(std::size_t i) const { return part ? part->number[i] : i; }
   /// Takes note of the rows that a table has. Collective.
   virtual void follow_rows(const PointTable& table) = 0;
   /// What this rank is.
   [[nodiscard]] virtual int rank() const = 0;
   /// Tells the values of own particles to the ranks whose rows touch them, three components. Collective.
   virtual void exchange(Field& field) = 0;
-  /// Tells the values of own particles to all ranks; where these have parts of the cloud, to those whose rows touch them. Collective.
+  /// Tells the values of own particles to all ranks that have them. Collective.
   virtual void complete(std::span<double> values) = 0;
   /// Whether this rank adds up part p of sums over the particles of the whole (sum_part).
   [[nodiscard]] virtual bool sums(std::size_t p) const = 0;

@@ -46,6 +46,7 @@ class BodyShare : public RowShare {
 struct SharedBody {
   const PointTable* table = nullptr;       ///< with all its rows, or with those that this rank has made
   const RowShare* made = nullptr;          ///< where each rank has made its own rows: how the table was divided; needed only while bodies are being divided
+  std::shared_ptr<const CloudPart> part;   ///< of the cloud that each rank has; null: all have the whole
   std::vector<double> region_cost;         ///< of a point of each region of the table beside its pairs, in pairs
   std::vector<char> known_to_all;          ///< per particle: 1 where every rank must know its motion in every step
   bool keep_rows = false;                  ///< no rank drops rows

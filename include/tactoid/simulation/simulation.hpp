@@ -86,7 +86,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       });
       motions = with_axis_condition(body.cloud(), std::move(motions));
       if (body.in_parts())  // the others belong to other processes
-        for (PrescribedMotion& motion : motions) std::erase_if(motion.particles, [&](Index i) { return i >= body.cloud().part->own; });
+        for (PrescribedMotion& motion : motions) std::erase_if(motion.particles, [&](Index i) { return i < body.size() && !body.cloud().part->is_own(i); });
       essential_[b] = EssentialConditions(std::move(motions), body.particle_values(), fields_[b].reference, body.masses());
       (void)impose(body, b, 0.0, 0.0);
       if (body.in_parts())
@@ -705,21 +705,26 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Throws ParameterError where processes have parts of a body's cloud that takes part in what needs the whole.
   void require_possible_parts() {
     std::array<std::string, body_count> in_parts;  // names
+    std::array<bool, body_count> surface{};
     for_each_body([&](const auto& body, std::size_t b) {
       if (!body.in_parts()) return;
+      surface[b] = body.cloud().part->surface;
       in_parts[b] = "Body \"" + body.name() + "\": each process has a part of its cloud; ";
       if (synchronous<I>) throw ParameterError(in_parts[b] + "implicit steps need the whole.");
       if (Ranks::current != nullptr && Ranks::current->sum_order != SumOrder::of_ranks) throw ParameterError(in_parts[b] + "choose SumOrder::of_ranks.");
     });
-    const auto refuse = [&](std::size_t b, const char* what) {
-      if (!in_parts[b].empty()) throw ParameterError(in_parts[b] + what);
+    const auto require = [&](const char* what, std::size_t n, std::size_t b, Reads reads) {
+      if (in_parts[b].empty()) return;
+      if (reads == Reads::all) throw ParameterError(fmt::format("{}{} number {} may read all of its particles.", in_parts[b], what, n));
+      if (!surface[b]) throw ParameterError(fmt::format("{}{} number {} needs all facets (Part::surface).", in_parts[b], what, n));
     };
-    for_each_contact([&](auto& between, std::size_t) {
+    for_each_contact([&](auto& between, std::size_t n) {
       using Pair = std::decay_t<decltype(between)>;
-      for (const std::size_t b : {Pair::first, Pair::second}) refuse(b, "contacts need the whole.");
+      require("contact", n, Pair::first, reads_a_of<std::decay_t<decltype(between.contact)>>);
+      require("contact", n, Pair::second, reads_b_of<std::decay_t<decltype(between.contact)>>);
     });
-    for_each_boundary([&](auto& on, std::size_t) {
-      if constexpr (!is_motion<decltype(on)>) refuse(std::decay_t<decltype(on)>::body, "boundary terms need the whole, prescribed motions do not.");
+    for_each_boundary([&](auto& on, std::size_t n) {
+      if constexpr (!is_motion<decltype(on)>) require("boundary term", n, std::decay_t<decltype(on)>::body, reads_of<std::decay_t<decltype(on.term)>>);
     });
   }
   /// Leaves to each process its part of the bodies, whose first state every process has evaluated.
@@ -761,6 +766,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     SharedBody part;
     part.table = &body.table();
     part.made = body.share();
+    part.part = body.cloud().part;
     part.keep_rows = synchronous<I> || !body.table().value_based();
     part.motion = {&body.displacement, &body.velocity};
     if constexpr (Body::has_director) part.motion.push_back(&body.director);
@@ -784,11 +790,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if constexpr (!is_motion<decltype(on)>) note(std::decay_t<decltype(on)>::body, reads_of<std::decay_t<decltype(on.term)>>);
     });
     part.known_to_all.assign(body.size(), all ? 1 : 0);
-    if (body.in_parts()) return part;
     if (facets)
       for (const auto& facet : body.cloud().facets)
         for (const Index i : facet) part.known_to_all[i] = 1;
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3 && !body.in_parts(); ++c)
       for (const auto& condition : essential_[b].conditions(c)) part.known_to_all[condition.particle] = 1;
     return part;
   }

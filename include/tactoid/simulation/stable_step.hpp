@@ -99,27 +99,36 @@ class StableStep {
     const std::vector<double>& masses;                                                ///< M, kg
     std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)> multiply;  ///< y = K x, at the particles of this process
   };
+  /// Whose particles they are, and which.
+  struct Particles {
+    BodyShare* share = nullptr;       ///< null where this process has all of them
+    const CloudPart* part = nullptr;  ///< which has their numbers in the whole cloud; null: they are those
+    [[nodiscard]] std::size_t number(std::size_t i) const { return part != nullptr ? part->number[i] : i; }
+  };
 
   /// Largest eigenvalue of M⁻¹ K with K symmetric, by Lanczos' method in the inner product of M. Power iterations settle long
   /// before they arrive where the highest modes lie close together: steps of a viscous gel, taken at their result, were
   /// unstable. The rest of the error is covered by 2 %.
-  [[nodiscard]] static double largest_eigenvalue(const Operator& of, BodyShare* share);
+  [[nodiscard]] static double largest_eigenvalue(const Operator& of, const Particles& particles);
 
   /// Largest eigenvalue of M⁻¹ Σ_q m_q G_q G_qᵀ over the points of region r, with their masses m_q (kg), in the configuration of
   /// the table; 1/m².
   [[nodiscard]] static double largest_wave_number(const PointTable& table, const std::vector<double>& masses,
-                                                  const std::vector<double>& point_masses, Index r, BodyShare* share);
+                                                  const std::vector<double>& point_masses, Index r, const Particles& particles);
 
   /// Largest eigenvalue of the derivative of −M⁻¹ f in `field`, which the forces depend on, from differences of them: of `size` (in
   /// the unit of the field) at most in each of the first D components.
   [[nodiscard]] static double largest_eigenvalue(int D, const std::vector<double>& masses, Field& field, double size,
-                                                 const std::function<const Field&()>& internal_forces, BodyShare* share);
+                                                 const std::function<const Field&()>& internal_forces, const Particles& particles);
+
+  template <class Body>
+  [[nodiscard]] static Particles particles(const Body& body) { return {body.share(), body.cloud().part.get()}; }
 
   template <class Body, class Region>
   [[nodiscard]] static double largest_wave_number(const Body& body, const Region& region, Index r) {
     std::vector<double> point_masses(body.table().points(), 0.0);
     for (std::size_t q = region.begin; q < region.end; ++q) point_masses[q] = body.point_volume(q) * region.law(q).density;
-    return largest_wave_number(body.table(), body.masses(), point_masses, r, body.share());
+    return largest_wave_number(body.table(), body.masses(), point_masses, r, particles(body));
   }
 
   /// Largest eigenvalue of the derivative of −M⁻¹ f in `field`, which is the body's displacement (1/s²) or velocity
@@ -140,7 +149,7 @@ class StableStep {
       std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
       body.add_internal_forces(0.0, false);
       return body.force;
-    }, body.share());
+    }, particles(body));
     body.displacement = displacement;
     body.velocity = velocity;
     (void)wave_numbers(body);  // which the body remembers

@@ -8,7 +8,8 @@
 
 namespace tactoid {
 
-TACTOID_INLINE double StableStep::largest_eigenvalue(const Operator& of, BodyShare* share) {
+TACTOID_INLINE double StableStep::largest_eigenvalue(const Operator& of, const Particles& particles) {
+  BodyShare* const share = particles.share;
   const OwnParticles own(share, of.masses.size());
   const std::size_t width = of.per_particle;
   ParticleSums sum(share, of.masses.size());
@@ -26,7 +27,7 @@ TACTOID_INLINE double StableStep::largest_eigenvalue(const Operator& of, BodySha
   // Arbitrary: nothing is orthogonal to it.
   for (std::size_t k = 0; k < own.size(); ++k)
     for (std::size_t d = 0; d < width; ++d)
-      mode[static_cast<Eigen::Index>(k * width + d)] = std::sin(12.9898 * static_cast<double>((share != nullptr ? share->number(own[k]) : k) * width + d + 1) * 1.61803398875);
+      mode[static_cast<Eigen::Index>(k * width + d)] = std::sin(12.9898 * static_cast<double>(particles.number(own[k]) * width + d + 1) * 1.61803398875);
   mode /= std::sqrt(inner(mode, mode));
   std::vector<double> diagonal, beside;
   double largest = 0.0;
@@ -55,7 +56,8 @@ TACTOID_INLINE double StableStep::largest_eigenvalue(const Operator& of, BodySha
 }
 
 TACTOID_INLINE double StableStep::largest_wave_number(const PointTable& table, const std::vector<double>& masses,
-                                                      const std::vector<double>& point_masses, Index r, BodyShare* share) {
+                                                      const std::vector<double>& point_masses, Index r, const Particles& particles) {
+  BodyShare* const share = particles.share;
   Field waves(masses.size(), Vector4::Zero()), result(waves);  // their first components
   const OwnParticles own(share, masses.size());
   return largest_eigenvalue({1, masses, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& image) {
@@ -72,11 +74,12 @@ TACTOID_INLINE double StableStep::largest_wave_number(const PointTable& table, c
       }
     });
     for (std::size_t k = 0; k < own.size(); ++k) image[static_cast<Eigen::Index>(k)] = result[own[k]][0];
-  }}, share);
+  }}, particles);
 }
 
 TACTOID_INLINE double StableStep::largest_eigenvalue(int D, const std::vector<double>& masses, Field& field, double size,
-                                                     const std::function<const Field&()>& internal_forces, BodyShare* share) {
+                                                     const std::function<const Field&()>& internal_forces, const Particles& particles) {
+  BodyShare* const share = particles.share;
   const Field start = field, rest = internal_forces();
   const OwnParticles own(share, masses.size());
   return largest_eigenvalue({static_cast<std::size_t>(D), masses, [&](const Eigen::VectorXd& mode, Eigen::VectorXd& result) {
@@ -89,7 +92,7 @@ TACTOID_INLINE double StableStep::largest_eigenvalue(int D, const std::vector<do
     const Field& force = internal_forces();
     for (std::size_t k = 0; k < own.size(); ++k)
       for (int d = 0; d < D; ++d) result[static_cast<Eigen::Index>(k) * D + d] = (1.0 / step) * (rest[own[k]][d] - force[own[k]][d]);
-  }}, share);
+  }}, particles);
 }
 
 }  // namespace tactoid
