@@ -29,6 +29,7 @@
 #include <tactoid/observe/reaction.hpp>
 #include <tactoid/observe/stress.hpp>
 #include <tactoid/output/body_frame.hpp>
+#include <tactoid/output/checkpoint.hpp>
 #include <tactoid/quadrature/all.hpp>
 #include <tactoid/simulation/body.hpp>
 #include <tactoid/simulation/simulation.hpp>
@@ -316,6 +317,129 @@ TEST_CASE("Frames are written in pieces") {
   if (session->rank() == 0) std::filesystem::remove_all(folder);
 }
 
+namespace {
+
+/// A folder of the test that all ranks have, as long as it lives.
+struct Folder {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / ("tactoid_parts_" + session->text_of(0, std::to_string(::getpid())));
+  Folder() {
+    prepare_folder(path);
+    (void)session->largest(0);
+  }
+  ~Folder() {
+    (void)session->largest(0);
+    if (session->rank() == 0) std::filesystem::remove_all(path);
+  }
+};
+
+/// What `compute()` returns in a process alone, rank 0; nothing on the others.
+template <class Compute>
+void alone(const Compute& compute) {
+  if (session->rank() == 0) {
+    Ranks::current = nullptr;
+    compute();
+    Ranks::current = session;
+  }
+  (void)session->largest(0);
+}
+
+/// A state that some ranks have left goes on on as many, on one, and back.
+template <class Compose>
+void check_checkpoints(const Compose& compose, double tolerance) {
+  const Folder folder;
+  const auto file = folder.path / "state.h5", of_one = folder.path / "of_one.h5";
+  auto simulation = compose(session->rank(), session->size());
+  take(simulation, 15);
+  write_checkpoint(file, {"parts", "", save_state(simulation)});
+  take(simulation, 15);
+  const Numbers straight = numbers_of(simulation);
+
+  const auto go_on = [&](const std::filesystem::path& from, int rank, int ranks) {
+    auto restored = compose(rank, ranks);
+    const SavedState like = save_state(restored);
+    restore_state(restored, read_checkpoint(from, like).state);
+    take(restored, 15);
+    return numbers_of(restored);
+  };
+  const Numbers again = go_on(file, session->rank(), session->size());
+  for (const auto& [name, list] : straight) {
+    INFO(name);
+    CHECK(list == again.at(name));  // the same bits
+  }
+  Numbers by_one;
+  alone([&] {
+    by_one = go_on(file, 0, 1);
+    auto one = compose(0, 1);
+    take(one, 15);
+    write_checkpoint(of_one, {"parts", "", save_state(one)});
+    const SavedState whole = read_checkpoint(of_one).state, here = save_state(one);
+    for (const auto& [name, array] : here) {
+      INFO(name);
+      REQUIRE(whole.contains(name));
+      CHECK((array.length == 0 ? whole.at(name) == array : whole.at(name).shape[0] == array.length));
+    }
+  });
+  const Numbers from_one = go_on(of_one, session->rank(), session->size());
+  if (session->rank() != 0) return;
+  for (const auto& [name, list] : straight) {
+    INFO(name);
+    CHECK(difference(by_one.at(name), list) <= tolerance);
+    CHECK(difference(from_one.at(name), list) <= tolerance);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("A state goes from some ranks to others") {
+  const Box bar{.size = Point<3>(4.0 * um, 0.5 * um, 0.5 * um), .cells = {24, 3, 4}};
+  check_checkpoints([&](int rank, int ranks) {
+    PointCloud<3> cloud = box_part(bar, {.rank = rank, .ranks = ranks, .support = Rkpm<3>{}.support});
+    const auto left = select(cloud, [](const Point<3>& X) { return X[0] < 1e-9; }), right = select(cloud, [](const Point<3>& X) { return X[0] > 3.999 * um; });
+    auto body = slab(std::move(cloud));
+    shake(body, 5.0);
+    return Simulation{Bodies{std::move(body)}, Contacts{},
+                      Boundaries{on<0>(fixed(left)), on<0>(PrescribedMotion{right, [](const Vector3&, double t) { return Vector3(0.1 * t, 0.0, 0.0); }, {true, false, false}})},
+                      SubcycledCentralDifference{CentralDifference{.safety = 0.5}, 4}};
+  }, 1e-11);
+}
+
+TEST_CASE("The state of a cell with a director, stuck to a plate, goes from some ranks to others") {
+  const PointCloud<3> whole = ball({.radius = 5.0 * um, .core_radius = 2.0 * um, .core_cells = 4, .shells = 4, .center = {0.0, 0.0, 5.1 * um}});
+  check_checkpoints([&](int rank, int ranks) {
+    Body body{"cell", part_of(whole, {.rank = rank, .ranks = ranks, .support = Rkpm<3>{}.support, .surface = true}), Rkpm<3>{}, NodalCentroids{.points_per_chunk = 16},
+              Materials{Region{"nucleus", ModifiedMooneyRivlin{}}, Region{"cytoplasm", NematicGel<>{}}}, DirectorField<>{}, [](const Vector3& X) { return Vector3(std::cos(1e6 * X[0]), std::sin(1e6 * X[1]), 0.3); }};
+    return Simulation{Bodies{std::move(body), slab(disc({.radius = 8.0 * um, .height = 3.0 * um, .core_cells = 4, .rings = 2, .layers = 4}))}, Contacts{between<0, 1>(LigandReceptor{}), between<0, 1>(ContactAnchoring{})},
+                      Boundaries{on<0>(SurfaceTension{})}, CentralDifference{}};
+  }, 1e-10);
+}
+
+TEST_CASE("Checkpoints that cannot be written or read are told on all ranks") {
+  const Folder folder;
+  auto simulation = shaken_slab(box_part(cube, part(Rkpm<3>{}.support)));
+  const SavedState like = save_state(simulation);
+  CHECK_THROWS_WITH_AS(write_checkpoint(folder.path / "nowhere" / "state.h5", {"parts", "", like}), doctest::Contains("Cannot write"), FileError);
+  CHECK_THROWS_WITH_AS((void)read_checkpoint(folder.path / "none.h5", like), doctest::Contains("Cannot read"), FileError);
+  const auto file = folder.path / "state.h5";
+  write_checkpoint(file, {"parts", "a = 1", like});
+  CHECK(read_checkpoint(file, like).parameters == "a = 1");
+  CHECK(!std::filesystem::exists(folder.path / "state.h5.part"));
+  (void)session->largest(0);
+  if (session->rank() == 0) {
+    std::string bytes = read_file(file);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    AtomicFile damaged(file);
+    damaged.write(bytes);
+    damaged.commit();
+  }
+  (void)session->largest(0);
+  CHECK_THROWS_WITH_AS((void)read_checkpoint(file, like), doctest::Contains("is a damaged checkpoint"), FileError);
+  // The state of something else.
+  Box other = cube;
+  other.cells[0] = 8;
+  auto larger = shaken_slab(box_part(other, part(Rkpm<3>{}.support)));
+  CHECK_THROWS_AS(restore_state(larger, like), ParameterError);
+}
+
 TEST_CASE("A point that is inverted on one rank ends the step on all, and the state before is there again") {
   auto body = slab(box_part(cube, part(Rkpm<3>{}.support)));
   const std::size_t wanted = 8 * 8 * 8 - 1;  // the last particle of the last rank
@@ -347,8 +471,6 @@ TEST_CASE("What needs the whole is refused, on all ranks") {
                        "Body \"slab\": each process has a part of its cloud; contact number 0 may read all of its particles.", ParameterError);
   CHECK_THROWS_WITH_AS((Simulation{Bodies{slab(box(cube)), body()}, Contacts{between<0, 1>(VanDerWaals{})}, Boundaries{}, CentralDifference{}}),
                        "Body \"slab\": each process has a part of its cloud; contact number 0 needs all facets (Part::surface).", ParameterError);
-  auto simulation = free_body(body());
-  CHECK_THROWS_WITH_AS((void)save_state(simulation), "Body \"slab\": nobody has the whole of it, and its state cannot be saved or restored.", ParameterError);
   // Parts of another division.
   CHECK_THROWS_AS(slab(box_part(cube, {.rank = 0, .ranks = session->size(), .support = 2.0})), ParameterError);
   CHECK_THROWS_AS(slab(box_part(cube, {.rank = session->rank(), .ranks = session->size() + 1, .support = 2.0})), ParameterError);

@@ -8,6 +8,7 @@
 
 #include <tactoid/boundary/prescribed_motion.hpp>
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/state.hpp>
 #include <tactoid/quadrature/particle_values.hpp>
 #include <tactoid/quadrature/row_share.hpp>
 
@@ -56,16 +57,18 @@ class EssentialConditions {
   /// In the order in which reactions are numbered.
   [[nodiscard]] const std::vector<PrescribedMotion>& motions() const { return motions_; }
 
-  /// For checkpoints: the forces, and what the work of the next step begins with.
+  /// For checkpoints: the forces, and what the work of the next step begins with. Of a body with a part of a cloud (null: the whole) those of the particles in `rows`; `share` is null where
+  /// one process has all of them. Collective.
   template <class Archive>
-  void state(Archive& archive) {
-    archive("forces", forces_);
+  void state(Archive& archive, const StateRows* rows, const CloudPart* part, RowShare* share) {
+    archive("forces", forces_, rows);
     archive("reactions", reactions_);
     for (int c = 0; c < 3; ++c) {
+      const StateRows of_conditions = part != nullptr ? condition_rows(c, *part, share) : StateRows();
       auto& last = directions_[static_cast<std::size_t>(c)].last;
       std::vector<Vector4> flat(last.size());
       for (std::size_t k = 0; k < last.size(); ++k) flat[k] = {last[k].value, last[k].rate, last[k].ahead, last[k].force};
-      archive(c == 0 ? "last_x" : c == 1 ? "last_y" : "last_z", flat);
+      if (part == nullptr || of_conditions.length > 0) archive(c == 0 ? "last_x" : c == 1 ? "last_y" : "last_z", flat, part != nullptr ? &of_conditions : nullptr);
       if constexpr (Archive::restoring)
         for (std::size_t k = 0; k < last.size(); ++k) last[k] = {flat[k][0], flat[k][1], flat[k][2], flat[k][3]};
     }
@@ -112,6 +115,8 @@ class EssentialConditions {
   }
 
   void factorize(Direction& direction, const ParticleValues& values) const;
+  /// The conditions of a component among those of all processes: by motion, and number of the particle.
+  [[nodiscard]] StateRows condition_rows(int c, const CloudPart& part, RowShare* share) const;
 
   std::vector<PrescribedMotion> motions_;
   const Field* reference_ = nullptr;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include <Eigen/SparseCholesky>
 
 #include <tactoid/core/compiled.hpp>
@@ -107,6 +109,16 @@ TACTOID_INLINE double EssentialConditions::impose(double time, double time_step,
     for (std::size_t m = 0; m < reactions_.size(); ++m) reactions_[m] = Vector3(sums[3 * m + 1], sums[3 * m + 2], sums[3 * m + 3]);
   }
   return work;
+}
+
+TACTOID_INLINE StateRows EssentialConditions::condition_rows(int c, const CloudPart& part, RowShare* share) const {
+  std::vector<double> keys;
+  for (const auto& [particle, motion] : conditions(c)) keys.push_back(static_cast<double>(motion * part.whole + part.number[particle]));
+  std::vector<double> all = share != nullptr ? share->join(keys) : keys;
+  std::sort(all.begin(), all.end());
+  StateRows rows{.size = keys.size(), .length = all.size(), .here = {}, .number = {}};
+  for (std::size_t k = 0; k < keys.size(); ++k) rows.add(k, static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), keys[k]) - all.begin()));
+  return rows;
 }
 
 TACTOID_INLINE double EssentialConditions::accept(double time, double time_step, const Field& holding, bool from_rest) {

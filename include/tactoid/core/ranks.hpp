@@ -62,6 +62,8 @@ class Ranks {
   virtual void gather(std::span<double> values, std::span<const std::size_t> first) = 0;
   virtual void gather(std::span<Index> values, std::span<const std::size_t> first) = 0;
   ///@}
+  /// The lists of all ranks, one behind the other, on the first rank; nothing on the others. Collective.
+  [[nodiscard]] virtual std::vector<double> at_first(std::span<const double> list) = 0;
   /// Throws ParameterError on all ranks, with the first rank that differs from rank 0 and what of it, unless all give the same
   /// text. Collective.
   void require_same(std::string_view what, const std::string& text) {

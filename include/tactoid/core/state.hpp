@@ -17,10 +17,26 @@ struct StateArray {
   std::vector<std::size_t> shape;  ///< extents, the slowest first; empty for a single number
   std::vector<double> values;  ///< whole numbers too, which are exact up to 2⁵³
   bool whole = false;          ///< the numbers are whole ones
+  std::vector<std::size_t> rows = {};  ///< of a list of which several processes have entries each: the numbers in the whole of those that are here; empty: all are
+  std::size_t length = 0;      ///< entries of the whole list, where some are here
   friend bool operator==(const StateArray&, const StateArray&) = default;  ///< exact: NaN differs from itself
 };
 
-/// The whole state of something, by name: "cell/displacement".
+/// Which entries of a list that each of several processes has a part of belong to this one: those that it saves, and gets back.
+struct StateRows {
+  std::size_t size = 0;             ///< of the list here
+  std::size_t length = 0;           ///< of the whole list
+  std::vector<std::size_t> here;    ///< places in the list here
+  std::vector<std::size_t> number;  ///< beside `here`: places in the whole list
+
+  /// One more entry.
+  void add(std::size_t place, std::size_t in_whole) {
+    here.push_back(place);
+    number.push_back(in_whole);
+  }
+};
+
+/// The whole state of something, by name: "cell/displacement". Of what several processes have parts of, each has its own entries.
 using SavedState = std::map<std::string, StateArray, std::less<>>;
 
 namespace detail {
@@ -56,8 +72,8 @@ struct StateElement<Eigen::Matrix<Scalar, Rows, Columns, Options, MaxRows, MaxCo
 ///
 /// which saves it (StateWriter) or restores it (StateReader); Archive::restoring says which. What is given when the object is
 /// composed (parameters, clouds, tables) is no state.
-template <class T, class Archive>
-concept HasState = requires(T& t, Archive& archive) { t.state(archive); };
+template <class T, class Archive, class... More>
+concept HasState = requires(T& t, Archive& archive, const More&... more) { t.state(archive, more...); };
 
 /// Collects a state.
 class StateWriter {
@@ -86,16 +102,33 @@ class StateWriter {
     for (const T& x : list)
       for (std::size_t k = 0; k < Element::size; ++k) array.values.push_back(Element::get(x, k));
   }
+  /// Keeps the entries of a list that belong to this process; all of them where `rows` is null.
+  template <class T>
+  void operator()(std::string_view name, const std::vector<T>& list, const StateRows* rows) {
+    if (rows == nullptr || (list.empty() && rows->size > 0)) return (*this)(name, list);
+    using Element = detail::StateElement<T>;
+    StateArray& array = insert(name);
+    array.shape = {rows->here.size()};
+    if (Element::size > 1) array.shape.push_back(Element::size);
+    array.whole = Element::whole;
+    array.rows = rows->number;
+    array.length = rows->length;
+    for (const std::size_t i : rows->here)
+      for (std::size_t k = 0; k < Element::size; ++k) array.values.push_back(Element::get(list[i], k));
+  }
   /// A value that tells one composition from another.
   template <class T>
   void expect(std::string_view name, const T& x) { (*this)(name, x); }
-  /// Saves what x has as its state, under names that begin with "name/"; nothing where it has none.
+  /// A list that does; as above.
   template <class T>
-  void part(std::string_view name, T& x) {
-    if constexpr (HasState<T, StateWriter>) {
+  void expect(std::string_view name, const std::vector<T>& list, const StateRows* rows) { (*this)(name, list, rows); }
+  /// Saves what x has as its state, under names that begin with "name/"; nothing where it has none. `more` is for x.state(archive, more…).
+  template <class T, class... More>
+  void part(std::string_view name, T& x, const More&... more) {
+    if constexpr (HasState<T, StateWriter, More...>) {
       const std::string outer = prefix_;
       prefix_ += std::string(name) + "/";
-      x.state(*this);
+      x.state(*this, more...);
       prefix_ = outer;
     }
   }
@@ -135,13 +168,28 @@ class StateReader {
     for (std::size_t i = 0; i < list.size(); ++i)
       for (std::size_t k = 0; k < Element::size; ++k) Element::set(list[i], k, array.values[i * Element::size + k]);
   }
-  /// Restores what x has as its state from the names that begin with "name/"; nothing where it has none.
+  /// The entries of a list that belong to this process, from these or from the whole list; the others stay. As above where `rows` is null.
   template <class T>
-  void part(std::string_view name, T& x) {
-    if constexpr (HasState<T, StateReader>) {
+  void operator()(std::string_view name, std::vector<T>& list, const StateRows* rows) {
+    if (rows == nullptr) return (*this)(name, list);
+    using Element = detail::StateElement<T>;
+    const StateArray& array = find(name, Element::whole);
+    if (array.shape.size() != (Element::size > 1 ? 2 : 1) || array.values.size() != array.shape[0] * Element::size) fail(name, "is not of the expected size");
+    const bool is_whole = array.rows.empty() && array.length == 0;
+    if (is_whole && array.shape[0] == 0) return list.clear();
+    if (is_whole ? array.shape[0] != rows->length : array.length != rows->length) fail(name, "is not of the expected size");
+    if (!is_whole && array.rows != rows->number) fail(name, "has the entries of another process");
+    list.resize(rows->size);
+    for (std::size_t j = 0; j < rows->here.size(); ++j)
+      for (std::size_t k = 0; k < Element::size; ++k) Element::set(list[rows->here[j]], k, array.values[(is_whole ? rows->number[j] : j) * Element::size + k]);
+  }
+  /// Restores what x has as its state from the names that begin with "name/"; nothing where it has none. `more` is for x.state(archive, more…).
+  template <class T, class... More>
+  void part(std::string_view name, T& x, const More&... more) {
+    if constexpr (HasState<T, StateReader, More...>) {
       const std::string outer = prefix_;
       prefix_ += std::string(name) + "/";
-      x.state(*this);
+      x.state(*this, more...);
       prefix_ = outer;
     }
   }
@@ -151,6 +199,13 @@ class StateReader {
     T saved = x;
     (*this)(name, saved);
     if (saved != x) fail(name, "differs");
+  }
+  /// The same of the entries of a list that belong to this process.
+  template <class T>
+  void expect(std::string_view name, const std::vector<T>& list, const StateRows* rows) {
+    std::vector<T> saved = list;
+    (*this)(name, saved, rows);
+    if (saved != list) fail(name, "differs");
   }
   /// Whether there is a value of this name.
   [[nodiscard]] bool has(std::string_view name) const { return saved_.find(prefix_ + std::string(name)) != saved_.end(); }

@@ -93,6 +93,7 @@ class Session final : public Ranks {
   }
   void gather(std::span<double> values, std::span<const std::size_t> first) override { gather(values.data(), first, MPI_DOUBLE); }
   void gather(std::span<Index> values, std::span<const std::size_t> first) override { gather(values.data(), first, MPI_UINT32_T); }
+  [[nodiscard]] std::vector<double> at_first(std::span<const double> list) override { return size_ == 1 ? std::vector<double>(list.begin(), list.end()) : mpi::at_first(ranks_, list); }
   [[nodiscard]] std::shared_ptr<RowShare> divide(const TableOutline& outline) override {
     ChunkGraph graph;
     add_chunks(graph, outline.table->particles, outline.touched, outline.cost);

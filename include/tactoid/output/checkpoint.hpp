@@ -6,16 +6,28 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
+#include <memory>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include <unistd.h>
 
 #include <fmt/format.h>
 #include <hdf5.h>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/ranks.hpp>
+#include <tactoid/core/read_file.hpp>
 #include <tactoid/core/state.hpp>
 #include <tactoid/core/version.hpp>
 #include <tactoid/output/file.hpp>
@@ -100,23 +112,175 @@ inline void write_attribute(hid_t object, const char* name, std::string_view tex
 
 constexpr std::size_t checkpoint_head_size = 512;  // a user block of HDF5
 
-/// The first line of a checkpoint says what it is, the next ones how many bytes follow, and their hash (FNV-1a): so that a damaged
+/// FNV-1a.
+class ByteHash {
+ public:
+  void add(std::string_view bytes) {
+    for (const char c : bytes) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
+    count_ += bytes.size();
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325ull;
+  std::size_t count_ = 0;
+};
+
+/// The first line of a checkpoint says what it is, the next ones how many bytes follow, and their hash: so that a damaged
 /// file is known before any of it is believed.
-[[nodiscard]] inline std::string checkpoint_head(std::string_view body) {
-  std::uint64_t hash = 0xCBF29CE484222325ull;
-  for (const char c : body) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
-  std::string head = fmt::format("Tactoid checkpoint, format {}\nbytes {}\nhash {:016x}\n", checkpoint_format, body.size(), hash);
+[[nodiscard]] inline std::string checkpoint_head(const ByteHash& body) {
+  std::string head = fmt::format("Tactoid checkpoint, format {}\nbytes {}\nhash {:016x}\n", checkpoint_format, body.count(), body.value());
   head.resize(checkpoint_head_size, '\0');
   return head;
+}
+[[nodiscard]] inline std::string checkpoint_head(std::string_view body) {
+  ByteHash hash;
+  hash.add(body);
+  return checkpoint_head(hash);
+}
+
+inline constexpr const char* checkpoint_mark = "Tactoid checkpoint, format ";
+/// Why a file that begins so is no checkpoint of this version; empty where it is one.
+[[nodiscard]] inline std::string why_no_checkpoint(std::string_view beginning) {
+  const std::string_view mark = checkpoint_mark;
+  if (!beginning.starts_with(mark)) return "is no checkpoint of Tactoid";
+  const std::string_view format = beginning.substr(mark.size(), beginning.substr(0, 64).find('\n') - mark.size());
+  if (format == fmt::format("{}", checkpoint_format)) return "";
+  return fmt::format("is a checkpoint of format {}, but this version of Tactoid, {}, reads format {}", in_quotes(format.substr(0, 8)), version, checkpoint_format);
+}
+
+inline void write_about(hid_t file, const Checkpoint& checkpoint) {
+  write_attribute(file, "program", checkpoint.program);
+  write_attribute(file, "parameters", checkpoint.parameters);
+  write_attribute(file, "version", version);
+}
+/// An empty data set of the state; `shape` is that of the whole.
+[[nodiscard]] inline hid_t create_set(hid_t file, const std::string& name, const std::vector<hsize_t>& shape, bool whole) {
+  const Hdf5 links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  hdf5_succeeded(H5Pset_create_intermediate_group(links, 1));
+  const Hdf5 space(shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  const hid_t set = H5Dcreate2(file, name.c_str(), whole ? H5T_STD_I64LE : H5T_IEEE_F64LE, space, links, H5P_DEFAULT, H5P_DEFAULT);
+  const std::string_view unit = unit_of(name);
+  if (set >= 0 && !unit.empty()) write_attribute(set, "unit", unit);
+  return set;
+}
+/// A data set that one process has.
+inline void write_set(hid_t file, const std::string& name, const StateArray& array) {
+  const Hdf5 set(create_set(file, name, {array.shape.begin(), array.shape.end()}, array.whole), H5Dclose);
+  if (!array.values.empty()) hdf5_succeeded(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
+}
+
+/// Rows [first, first + count) of a data set of lists.
+struct SetRows {
+  std::vector<hsize_t> start, extent;
+  SetRows(std::size_t first, std::size_t count, std::size_t width, bool vectors) : start{first}, extent{count} {
+    if (vectors) start.push_back(0), extent.push_back(width);
+  }
+  /// Writes them with H5Dwrite, or reads them with H5Dread.
+  template <class Transfer, class Numbers>
+  void transfer(hid_t set, const Transfer& how, Numbers* numbers) const {
+    const Hdf5 space(H5Dget_space(set), H5Sclose), memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
+    hdf5_succeeded(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr));
+    hdf5_succeeded(how(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, numbers));
+  }
+};
+/// So many rows of a list are in the memory of one process at a time.
+inline constexpr std::size_t rows_at_a_time = std::size_t{1} << 16;
+
+/// A data set of which several processes have rows each: they come to the first one piece by piece; what nobody has is 0. `set` is used there alone; where it cannot be written to,
+/// all go on, and the first one's `failure` says so. Collective.
+inline void write_rows(const hid_t* set, const StateArray& array, std::string& failure) {
+  Ranks* const ranks = Ranks::current;
+  const std::size_t width = array.shape.size() > 1 ? array.shape[1] : 1;
+  std::vector<std::size_t> order(array.rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return array.rows[a] < array.rows[b]; });
+  std::vector<double> list, piece;
+  auto next = order.begin();
+  for (std::size_t first = 0; first < array.length; first += rows_at_a_time) {
+    const std::size_t count = std::min(rows_at_a_time, array.length - first);
+    list.clear();
+    for (; next != order.end() && array.rows[*next] < first + count; ++next) {
+      list.push_back(static_cast<double>(array.rows[*next] - first));
+      list.insert(list.end(), array.values.begin() + static_cast<std::ptrdiff_t>(*next * width), array.values.begin() + static_cast<std::ptrdiff_t>((*next + 1) * width));
+    }
+    if (ranks != nullptr) list = ranks->at_first(list);
+    if (set == nullptr || !failure.empty()) continue;
+    piece.assign(count * width, 0.0);
+    for (std::size_t k = 0; k < list.size(); k += width + 1) std::copy_n(list.data() + k + 1, width, piece.data() + static_cast<std::size_t>(list[k]) * width);
+    try {
+      SetRows(first, count, width, array.shape.size() > 1).transfer(*set, H5Dwrite, piece.data());
+    } catch (const FileError& error) {
+      failure = error.what();
+    }
+  }
+}
+
+/// Writes a checkpoint of which several processes have rows each. Collective; throws FileError on all of them.
+inline void write_checkpoint_in_rows(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  const bool writes = is_first_rank();
+  const std::filesystem::path temporary = path.string() + ".part";
+  std::string failure;
+  const auto attempt = [&](const auto& work) {
+    if (!writes || !failure.empty()) return;
+    try {
+      work();
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+  };
+  {
+    const QuietHdf5 quiet;
+    std::optional<Hdf5> file;
+    attempt([&] {
+      { AtomicFile probe(path); }  // tells by the system's reason where no file can be
+      const Hdf5 creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+      hdf5_succeeded(H5Pset_userblock(creation, checkpoint_head_size));
+      file.emplace(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose);
+      write_about(*file, checkpoint);
+    });
+    for (const auto& [name, array] : checkpoint.state) {
+      if (array.length == 0) {
+        attempt([&] { write_set(*file, name, array); });
+        continue;
+      }
+      std::optional<Hdf5> set;
+      attempt([&] {
+        std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
+        shape[0] = array.length;
+        set.emplace(create_set(*file, name, shape, array.whole), H5Dclose);
+      });
+      const hid_t id = set ? hid_t(*set) : -1;
+      write_rows(set ? &id : nullptr, array, failure);
+    }
+    attempt([&] { hdf5_succeeded(H5Fflush(*file, H5F_SCOPE_GLOBAL)); });
+  }
+  attempt([&] {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "r+b"), std::fclose);
+    if (file == nullptr || std::fseek(file.get(), checkpoint_head_size, SEEK_SET) != 0) fail_file("write", path, errno);
+    ByteHash hash;
+    std::string bytes(std::size_t{1} << 20, '\0');
+    for (std::size_t n = 0; (n = std::fread(bytes.data(), 1, bytes.size(), file.get())) > 0;) hash.add(std::string_view(bytes).substr(0, n));
+    const std::string head = checkpoint_head(hash);
+    if (std::ferror(file.get()) || std::fseek(file.get(), 0, SEEK_SET) != 0 || std::fwrite(head.data(), 1, head.size(), file.get()) != head.size() || std::fflush(file.get()) != 0 ||
+        ::fsync(::fileno(file.get())) != 0 || std::rename(temporary.c_str(), path.c_str()) != 0)
+      fail_file("write", path, errno);
+  });
+  if (writes && !failure.empty()) std::remove(temporary.c_str());
+  if (Ranks::current != nullptr) failure = Ranks::current->first_failure(failure);
+  if (!failure.empty()) throw FileError(failure);
 }
 
 }  // namespace detail
 
 /// Writes a checkpoint: an HDF5 file behind a head of 512 bytes, which Python's h5py opens as it is. Names of the state are
 /// groups and data sets, those of bodies with their units; `program`, `parameters`, `version` are attributes. The file appears
-/// whole or not at all; a former one at this path stays until then. The first of several processes writes. Throws FileError.
+/// whole or not at all; a former one at this path stays until then. The first of several processes writes. Where these have parts of the state, all must call it: what they have comes to the first
+/// one piece by piece, and stands in the file as in that of one process. Throws FileError.
 inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  if (!is_first_rank()) return;  // a state that was saved is whole on all of several processes
+  if (std::any_of(checkpoint.state.begin(), checkpoint.state.end(), [](const auto& named) { return named.second.length > 0; })) return detail::write_checkpoint_in_rows(path, checkpoint);
+  if (!is_first_rank()) return;  // the state is whole on all of several processes
   using detail::Hdf5, detail::hdf5_succeeded;
   const detail::QuietHdf5 quiet;
   std::string image;
@@ -126,19 +290,8 @@ inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint
     const Hdf5 access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     hdf5_succeeded(H5Pset_fapl_core(access, std::size_t{1} << 22, 0));  // in memory
     const Hdf5 file(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation, access), H5Fclose);
-    detail::write_attribute(file, "program", checkpoint.program);
-    detail::write_attribute(file, "parameters", checkpoint.parameters);
-    detail::write_attribute(file, "version", version);
-    const Hdf5 links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-    hdf5_succeeded(H5Pset_create_intermediate_group(links, 1));
-    for (const auto& [name, array] : checkpoint.state) {
-      const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
-      const Hdf5 space(shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-      const Hdf5 set(H5Dcreate2(file, name.c_str(), array.whole ? H5T_STD_I64LE : H5T_IEEE_F64LE, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
-      if (!array.values.empty()) hdf5_succeeded(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
-      const std::string_view unit = detail::unit_of(name);
-      if (!unit.empty()) detail::write_attribute(set, "unit", unit);
-    }
+    detail::write_about(file, checkpoint);
+    for (const auto& [name, array] : checkpoint.state) detail::write_set(file, name, array);
     hdf5_succeeded(H5Fflush(file, H5F_SCOPE_GLOBAL));
     const ssize_t size = H5Fget_file_image(file, nullptr, 0);
     if (size <= 0) throw FileError("HDF5 refused a part of a checkpoint.");
@@ -154,17 +307,80 @@ inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint
   out.commit(true);
 }
 
+namespace detail {
+
+/// Reads a data set: all of it, or the rows that are wanted.
+[[nodiscard]] inline StateArray read_set(hid_t root, const char* name, const StateArray* wanted) {
+  const Hdf5 set(H5Dopen2(root, name, H5P_DEFAULT), H5Dclose);
+  const Hdf5 space(H5Dget_space(set), H5Sclose);
+  const Hdf5 type(H5Dget_type(set), H5Tclose);
+  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  if (!shape.empty()) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+  StateArray array{.shape = {shape.begin(), shape.end()}, .values = {}, .whole = H5Tget_class(type) == H5T_INTEGER};
+  const bool in_rows = wanted != nullptr && wanted->length > 0 && !shape.empty() && shape[0] == wanted->length;
+  if (!in_rows) {
+    array.values.resize(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    if (!array.values.empty()) hdf5_succeeded(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
+    return array;
+  }
+  const std::size_t width = shape.size() > 1 ? static_cast<std::size_t>(shape[1]) : 1;
+  array.rows = wanted->rows;
+  array.length = wanted->length;
+  array.shape[0] = array.rows.size();
+  array.values.resize(array.rows.size() * width);
+  std::vector<std::size_t> order(array.rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return array.rows[a] < array.rows[b]; });
+  std::vector<double> piece;
+  for (auto next = order.begin(); next != order.end();) {
+    const std::size_t first = array.rows[*next], count = std::min(rows_at_a_time, array.length - first);
+    piece.resize(count * width);
+    SetRows(first, count, width, shape.size() > 1).transfer(set, H5Dread, piece.data());
+    for (; next != order.end() && array.rows[*next] < first + count; ++next)
+      std::copy_n(piece.data() + (array.rows[*next] - first) * width, width, array.values.data() + *next * width);
+  }
+  return array;
+}
+
+/// Everything in an open file; of lists of which `wanted` has rows, these.
+[[nodiscard]] inline Checkpoint read_everything(hid_t file, const SavedState* wanted) {
+#if H5_VERSION_GE(1, 12, 0)
+  using ObjectInfo = H5O_info1_t;
+  constexpr auto visit_all = [](auto... arguments) { return H5Ovisit1(arguments...); };
+#else
+  using ObjectInfo = H5O_info_t;
+  constexpr auto visit_all = [](auto... arguments) { return H5Ovisit(arguments...); };
+#endif
+  struct Visit {
+    SavedState state;
+    const SavedState* wanted;
+  } visited{{}, wanted};
+  const auto visit = [](hid_t root, const char* name, const ObjectInfo* info, void* data) -> herr_t {
+    if (info->type != H5O_TYPE_DATASET) return 0;
+    try {
+      auto& [state, rows] = *static_cast<Visit*>(data);
+      const StateArray* of_name = nullptr;
+      if (rows != nullptr)
+        if (const auto at = rows->find(name); at != rows->end()) of_name = &at->second;
+      state.emplace(name, read_set(root, name, of_name));
+      return 0;
+    } catch (const std::exception&) {
+      return -1;
+    }
+  };
+  hdf5_succeeded(visit_all(file, H5_INDEX_NAME, H5_ITER_INC, +visit, static_cast<void*>(&visited)));
+  return {read_attribute(file, "program"), read_attribute(file, "parameters"), std::move(visited.state)};
+}
+
+}  // namespace detail
+
 /// Reads a checkpoint. Throws FileError, with the path and one reason, for a file that cannot be read, is no checkpoint, is of
 /// another format, or is damaged.
 [[nodiscard]] inline Checkpoint read_checkpoint(const std::filesystem::path& path) {
   using detail::Hdf5, detail::hdf5_succeeded;
   const auto refuse = [&](std::string_view why) { throw FileError(fmt::format("{} {}.", in_quotes(path.string()), why)); };
   std::string bytes = read_file(path);  // HDF5 takes it as if it might change it
-  const std::string_view mark = "Tactoid checkpoint, format ";
-  if (!std::string_view(bytes).starts_with(mark)) refuse("is no checkpoint of Tactoid");
-  const std::string_view format = std::string_view(bytes).substr(mark.size(), bytes.substr(0, 64).find('\n') - mark.size());
-  if (format != fmt::format("{}", checkpoint_format))
-    refuse(fmt::format("is a checkpoint of format {}, but this version of Tactoid, {}, reads format {}", in_quotes(format.substr(0, 8)), version, checkpoint_format));
+  if (const std::string why = detail::why_no_checkpoint(bytes); !why.empty()) refuse(why);
   if (bytes.size() <= detail::checkpoint_head_size ||
       bytes.substr(0, detail::checkpoint_head_size) != detail::checkpoint_head(std::string_view(bytes).substr(detail::checkpoint_head_size)))
     refuse("is a damaged checkpoint: it is cut off, or some of its bytes have changed");
@@ -175,37 +391,55 @@ inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint
     hdf5_succeeded(H5Pset_fapl_core(access, std::size_t{1} << 22, 0));
     hdf5_succeeded(H5Pset_file_image(access, bytes.data(), bytes.size()));
     const Hdf5 file(H5Fopen("checkpoint", H5F_ACC_RDONLY, access), H5Fclose);
-    Checkpoint checkpoint{detail::read_attribute(file, "program"), detail::read_attribute(file, "parameters"), {}};
-#if H5_VERSION_GE(1, 12, 0)
-    using ObjectInfo = H5O_info1_t;
-    constexpr auto visit_all = [](auto... arguments) { return H5Ovisit1(arguments...); };
-#else
-    using ObjectInfo = H5O_info_t;
-    constexpr auto visit_all = [](auto... arguments) { return H5Ovisit(arguments...); };
-#endif
-    const auto visit = [](hid_t root, const char* name, const ObjectInfo* info, void* data) -> herr_t {
-      if (info->type != H5O_TYPE_DATASET) return 0;
-      try {
-        const Hdf5 set(H5Dopen2(root, name, H5P_DEFAULT), H5Dclose);
-        const Hdf5 space(H5Dget_space(set), H5Sclose);
-        const Hdf5 type(H5Dget_type(set), H5Tclose);
-        std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
-        if (!shape.empty()) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
-        StateArray array{std::vector<std::size_t>(shape.begin(), shape.end()), {}, H5Tget_class(type) == H5T_INTEGER};
-        array.values.resize(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-        if (!array.values.empty()) hdf5_succeeded(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
-        static_cast<SavedState*>(data)->emplace(name, std::move(array));
-        return 0;
-      } catch (const std::exception&) {
-        return -1;
-      }
-    };
-    hdf5_succeeded(visit_all(hid_t(file), H5_INDEX_NAME, H5_ITER_INC, +visit, static_cast<void*>(&checkpoint.state)));
-    return checkpoint;
+    return detail::read_everything(file, nullptr);
   } catch (const FileError&) {
     refuse("is a checkpoint that HDF5 cannot read");
   }
   return {};
+}
+
+/// Reads a checkpoint for something of which each of several processes has a part, on any number of them: of lists of which `like`, a state of it as it is now (save_state), has some entries, those are
+/// read, and no process has the whole.
+///
+///   const SavedState like = save_state(simulation);
+///   restore_state(simulation, read_checkpoint("checkpoint.h5", like).state);
+///
+/// Whether the file is damaged the first process finds out. Collective; throws FileError on all of them as above.
+[[nodiscard]] inline Checkpoint read_checkpoint(const std::filesystem::path& path, const SavedState& like) {
+  std::string why;
+  const auto together = [&](const auto& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      why = error.what();
+    }
+    if (Ranks::current != nullptr) why = Ranks::current->first_failure(why);
+    if (!why.empty()) throw FileError(why);
+  };
+  together([&] {
+    if (!is_first_rank()) return;
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (file == nullptr) detail::fail_file("read", path, errno);
+    std::string head(detail::checkpoint_head_size, '\0'), bytes(std::size_t{1} << 20, '\0');
+    head.resize(std::fread(head.data(), 1, head.size(), file.get()));
+    std::string failure = detail::why_no_checkpoint(head);
+    detail::ByteHash hash;
+    for (std::size_t n = 0; failure.empty() && (n = std::fread(bytes.data(), 1, bytes.size(), file.get())) > 0;) hash.add(std::string_view(bytes).substr(0, n));
+    if (std::ferror(file.get())) detail::fail_file("read", path, errno);
+    if (failure.empty() && head != detail::checkpoint_head(hash)) failure = "is a damaged checkpoint: it is cut off, or some of its bytes have changed";
+    if (!failure.empty()) throw FileError(fmt::format("{} {}.", in_quotes(path.string()), failure));
+  });
+  Checkpoint checkpoint;
+  together([&] {
+    const detail::QuietHdf5 quiet;
+    try {
+      const detail::Hdf5 file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+      checkpoint = detail::read_everything(file, &like);
+    } catch (const FileError&) {
+      throw FileError(fmt::format("{} is a checkpoint that HDF5 cannot read.", in_quotes(path.string())));
+    }
+  });
+  return checkpoint;
 }
 
 }  // namespace tactoid

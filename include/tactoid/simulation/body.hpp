@@ -394,26 +394,44 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   /// What a step leaves to the next one. The reference positions tell bodies apart.
   template <class Archive>
   void state(Archive& archive) {
-    if (in_parts()) throw ParameterError("Body \"" + name_ + "\": nobody has the whole of it, and its state cannot be saved or restored.");
     if constexpr (!Archive::restoring) complete_points();
-    archive.expect("reference", reference());
-    archive.expect("points", table_.points());
+    const StateRows of_particles = particle_rows(), of_points = point_rows();
+    const StateRows* const particles = cloud_.part ? &of_particles : nullptr;
+    const StateRows* const points = cloud_.part ? &of_points : nullptr;
+    archive.expect("reference", reference(), particles);
+    archive.expect("points", points != nullptr ? points->length : table_.points());
     restore_reference(archive);
     archive.expect("pairs", table_.pairs());
     archive.expect("bytes_per_pair", sizeof(Entry));
-    archive("displacement", displacement);
-    archive("velocity", velocity);
-    archive("force", force);
+    archive("displacement", displacement, particles);
+    archive("velocity", velocity, particles);
+    archive("force", force, particles);
     archive("region_wave_numbers", found_.stretch);
     if constexpr (has_director) {
-      archive("director", director);
-      archive("director_flux", director_flux);
-      archive("anchored", anchored);
-      archive("point_rate", point_rate_);
-      archive("point_volume_ratio", point_volume_ratio_);
+      archive("director", director, particles);
+      archive("director_flux", director_flux, particles);
+      archive("anchored", anchored, particles);
+      archive("point_rate", point_rate_, points);
+      archive("point_volume_ratio", point_volume_ratio_, points);
     }
-    for_each_region([&](auto& region, Index r) { archive.part("region_" + std::to_string(r), region); });
-    if constexpr (Archive::restoring && has_director) found_.largest_volume_ratio = *std::max_element(point_volume_ratio_.begin(), point_volume_ratio_.end());
+    for_each_region([&](auto& region, Index r) {
+      const std::string name = "region_" + std::to_string(r);
+      if (points != nullptr) archive.part(name, region, point_rows(region.begin, region.end));
+      else archive.part(name, region);
+    });
+    if constexpr (Archive::restoring && has_director) {
+      double most = 0.0;
+      for (std::size_t q = 0; q < table_.points(); ++q)
+        if (!in_parts() || share_->part->is_own(table_.owner[q])) most = std::max(most, point_volume_ratio_[q]);
+      found_.largest_volume_ratio = in_parts() ? share_->largest(most) : most;
+    }
+  }
+  /// Own particles among those of the whole cloud, for checkpoints of a body with a part of one.
+  [[nodiscard]] StateRows particle_rows() const {
+    StateRows rows{.size = size(), .length = cloud_.part ? cloud_.part->whole : 0, .here = {}, .number = {}};
+    if (cloud_.part)
+      for (const Index i : cloud_.part->own) rows.add(i, cloud_.part->number[i]);
+    return rows;
   }
 
   /// Bytes of the tables and fields of the body.
@@ -574,6 +592,25 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
 
   void require_whole() const {
     if (share_) throw ParameterError("Body \"" + name_ + "\": several processes share it, and so it keeps its reference.");
+  }
+
+  /// Own points [begin, end), which count from there: of one region, by the number of their particle in the whole cloud.
+  [[nodiscard]] StateRows point_rows(std::size_t begin, std::size_t end) const {
+    StateRows rows{.size = end - begin, .length = cloud_.part->whole, .here = {}, .number = {}};
+    for (std::size_t q = begin; q < end; ++q)
+      if (cloud_.part->is_own(table_.owner[q])) rows.add(q - begin, cloud_.part->number[table_.owner[q]]);
+    return rows;
+  }
+  /// Those of all regions, one behind the other.
+  [[nodiscard]] StateRows point_rows() const {
+    StateRows all{.size = table_.points(), .length = 0, .here = {}, .number = {}};
+    if (!cloud_.part) return all;
+    for_each_region([&](const auto& region, Index) {
+      const StateRows rows = point_rows(region.begin, region.end);
+      for (std::size_t k = 0; k < rows.here.size(); ++k) all.add(region.begin + rows.here[k], all.length + rows.number[k]);
+      all.length += rows.length;
+    });
+    return all;
   }
 
   /// Goes on with a table of the same points on another reference; where its masses are not positive, with the one before.

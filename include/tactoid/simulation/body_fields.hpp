@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactoid/core/parallel.hpp>
+#include <tactoid/core/state.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 
 namespace tactoid {
@@ -54,12 +55,12 @@ struct BodyFields {
     }
   }
 
-  /// For checkpoints: positions, velocities and forces; the rest comes from the body.
+  /// For checkpoints: positions, velocities and forces, of the particles in `rows`; the rest comes from the body.
   template <class Archive>
-  void state(Archive& archive) {
-    archive("position", position);
-    archive("velocity", velocity);
-    archive("force", force);
+  void state(Archive& archive, const StateRows* rows) {
+    archive("position", position, rows);
+    archive("velocity", velocity, rows);
+    archive("force", force, rows);
   }
 
   /// As contacts and terms take it; valid as long as this object.

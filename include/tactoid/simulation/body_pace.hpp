@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <tactoid/boundary/essential_conditions.hpp>
+#include <tactoid/core/state.hpp>
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/simulation/body.hpp>
 
@@ -87,13 +88,13 @@ class BodyPace {
     due_ = true;
   }
 
-  /// For checkpoints, at an instant at which the body is due.
+  /// For checkpoints, at an instant at which the body is due; of the particles in `rows`.
   template <class Archive>
-  void state(Archive& archive) {
-    archive("internal", internal);
+  void state(Archive& archive, const StateRows* rows) {
+    archive("internal", internal, rows);
     archive("length", length_);
     archive("weight", weight_);
-    archive("held", held);
+    archive("held", held, rows);
     archive("strain_energy", totals_.strain_energy);
     archive("stabilization_energy", totals_.stabilization_energy);
     if constexpr (Archive::restoring) due_ = true;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tactoid/core/lanes.hpp>
+#include <tactoid/core/state.hpp>
 #include <tactoid/material/all.hpp>
 #include <tactoid/material/history.hpp>
 #include <tactoid/quadrature/quadrature.hpp>
@@ -55,6 +56,23 @@ struct RegionLaw {
       };
       for_each_number([](double& number, Scalar& x, int l) { number = lane(x, l); });
       archive("histories", flat);
+      if constexpr (Archive::restoring) for_each_number([](double& number, Scalar& x, int l) { set_lane(x, l, number); });
+    }
+  }
+
+  /// The same of the points in `rows`, whose places count from the first point of the region.
+  template <class Archive>
+  void state(Archive& archive, const StateRows& rows) {
+    constexpr std::size_t scalars = history_size<Law>;
+    if constexpr (scalars > 0) {
+      std::vector<Eigen::Matrix<double, static_cast<int>(scalars), 1>> of_points(end - begin);
+      const auto for_each_number = [&](const auto& visit) {
+        for (std::size_t p = 0; p < of_points.size(); ++p)
+          for (std::size_t k = 0; k < scalars; ++k)
+            visit(of_points[p][static_cast<Eigen::Index>(k)], history_scalars<Law, Scalar>(histories[block(begin + p)])[k], static_cast<int>(p % static_cast<std::size_t>(width)));
+      };
+      for_each_number([](double& number, Scalar& x, int l) { number = lane(x, l); });
+      archive("points", of_points, &rows);
       if constexpr (Archive::restoring) for_each_number([](double& number, Scalar& x, int l) { set_lane(x, l, number); });
     }
   }

@@ -256,18 +256,26 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       const std::string name = "body_" + std::to_string(b);
       archive.part(name, body);
       if constexpr (Archive::restoring) fields_[b].follow_masses(body);
-      archive.part(name + "/at_particles", fields_[b]);
-      archive.part(name + "/conditions", essential_[b]);
+      const StateRows own = body.particle_rows();
+      const CloudPart* const part = body.cloud().part.get();
+      const StateRows* const rows = part != nullptr ? &own : nullptr;
+      archive.part(name + "/at_particles", fields_[b], rows);
+      archive.part(name + "/conditions", essential_[b], rows, part, static_cast<RowShare*>(body.share()));
       archive.part(name + "/stable_step", stable_[b]);
       archive(name + "/term_rate", term_rates_[b]);
-      if (subcycling()) archive.part(name + "/pace", pace_[b]);
+      if (subcycling()) archive.part(name + "/pace", pace_[b], rows);
     });
     for_each_contact([&](auto& between, std::size_t n) { archive.part("contact_" + std::to_string(n), between.contact); });
     for_each_boundary([&](auto& on, std::size_t n) {
       if constexpr (!is_motion<decltype(on)>) archive.part("boundary_" + std::to_string(n), on.term);
     });
     archive.part("integrator", integrator_);
-    if constexpr (Archive::restoring) resumed_ = true;
+    if constexpr (Archive::restoring) {
+      resumed_ = true;
+      bool in_parts = false;
+      for_each_body([&](const auto& body, std::size_t) { in_parts = in_parts || body.in_parts(); });
+      if (in_parts) decomposition_->complete();  // each process has restored its own particles
+    }
   }
 
   // --- what an integrator uses -------------------------------------------------------------------------------
