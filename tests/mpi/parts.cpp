@@ -42,6 +42,13 @@ constexpr double um = 1e-6;
 
 mpi::Session* session = nullptr;
 
+/// A block of which each rank makes its own particles, and what their rows touch.
+[[nodiscard]] inline auto block_in_parts(const mpi::Session& session, const Box& whole) {
+  const Rkpm<3> kernel{};
+  const Part part{.rank = session.rank(), .ranks = session.size(), .support = kernel.support};
+  return Body{"block", box_part(whole, part), kernel, NodalCentroids{}, Materials{Region{"body", NeoHookean::from_young(1e4, 0.3)}}};
+}
+
 [[nodiscard]] Part part(double support, bool surface = false) { return {.rank = session->rank(), .ranks = session->size(), .support = support, .surface = surface}; }
 
 /// What is compared: lists of numbers by name; of particles by their number in the whole.
@@ -288,6 +295,12 @@ TEST_CASE("A box that is made in parts is the box") {
   CHECK(divided.time() == doctest::Approx(whole.at("time").values[0]).epsilon(1e-11));
   const auto& body = divided.body<0>();
   if (session->size() > 3) CHECK(body.size() < 0.8 * static_cast<double>(body.cloud().part->whole));
+}
+
+TEST_CASE("The block of the page") {
+  auto simulation = free_body(block_in_parts(*session, cube));
+  take(simulation, 1);
+  CHECK(motion<0>(simulation).mass == doctest::Approx(um * um * um * NeoHookean::from_young(1e4, 0.3).density).epsilon(1e-12));
 }
 
 TEST_CASE("Frames are written in pieces") {
