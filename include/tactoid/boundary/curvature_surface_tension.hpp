@@ -42,9 +42,12 @@ struct CurvatureSurfaceTension {
   /// For checkpoints: normals, areas and curvatures, for who reads them before the next step.
   template <class Archive>
   void state(Archive& archive) {
-    archive("normals", normals);
-    archive("areas", areas);
-    archive("curvatures", curvatures);
+    if (integral.empty()) return;
+    integral.visit([&](const auto& s) {
+      state_at(archive, "normals", normals, s.surface.nodes);
+      state_at(archive, "areas", areas, s.surface.nodes);
+      state_at(archive, "curvatures", curvatures, s.surface.nodes);
+    });
   }
 
  private:

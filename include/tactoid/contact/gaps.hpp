@@ -37,8 +37,8 @@ class SurfaceGaps {
   template <class Archive>
   void state(Archive& archive) {
     archive.part("tracker", tracker_);
-    archive("gaps", gaps_);
-    archive("normals", normals_);
+    state_at(archive, "gaps", gaps_, surface_.nodes);
+    state_at(archive, "normals", normals_, surface_.nodes);
   }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <span>
 #include <string>
@@ -79,6 +80,23 @@ class Ranks {
   [[nodiscard]] std::string first_failure(const std::string& failure) {
     const long first = size() - largest(failure.empty() ? 0 : size() - rank());
     return first < size() ? text_of(static_cast<int>(first), failure) : std::string();
+  }
+
+  /// Does what each rank does for itself. What it throws on the first rank that fails is thrown on all: a ParameterError, or else a GeometryError. Collective.
+  template <class F>
+  void together(const F& work) {
+    std::string failure;
+    try {
+      work();
+    } catch (const ParameterError& error) {
+      failure = std::string("P") + error.what();
+    } catch (const std::exception& error) {
+      failure = std::string("G") + error.what();
+    }
+    const std::string first = first_failure(failure);
+    if (first.empty()) return;
+    if (first.front() == 'P') throw ParameterError(first.substr(1));
+    throw GeometryError(first.substr(1));
   }
 
   /// Divides a table among the ranks before its rows are made. Collective.

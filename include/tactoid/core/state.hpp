@@ -224,6 +224,16 @@ class StateReader {
   std::string prefix_;
 };
 
+/// The state of a list at some places of it, as a list of its own: what a term keeps of each particle of a surface, of which each of several processes has other particles behind them.
+template <class Archive, class T>
+void state_at(Archive& archive, std::string_view name, std::vector<T>& list, const std::vector<Index>& places) {
+  std::vector<T> there;
+  for (const Index i : places) there.push_back(list[i]);
+  archive(name, there);
+  if constexpr (Archive::restoring)
+    for (std::size_t k = 0; k < there.size(); ++k) list[places[k]] = there[k];
+}
+
 /// Everything that `x` needs to go on.
 template <class T>
 [[nodiscard]] SavedState save_state(T& x) {

@@ -3,7 +3,6 @@
 #include <tactoid/geometry/ball.hpp>
 #include <tactoid/geometry/box.hpp>
 #include <tactoid/geometry/cell_map.hpp>
-#include <tactoid/geometry/cloud_part.hpp>
 #include <tactoid/geometry/disc.hpp>
 #include <tactoid/geometry/facets.hpp>
 #include <tactoid/geometry/jitter.hpp>

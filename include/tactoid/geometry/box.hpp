@@ -4,7 +4,6 @@
 #include <string>
 
 #include <tactoid/core/errors.hpp>
-#include <tactoid/geometry/cloud_part.hpp>
 #include <tactoid/geometry/facets.hpp>
 #include <tactoid/geometry/order.hpp>
 

@@ -218,7 +218,7 @@ PointCloud<D> brick_part(const Point<D>& size, const std::array<int, static_cast
   GridAxes<D> here = whole;
   std::vector<std::vector<char>> complete(here.size());  // per direction and node: it has the cells on both sides
   for (std::size_t k = 0; k < here.size(); ++k) {
-    const auto beyond = static_cast<std::int64_t>(std::ceil(reach_of_part(part, spacing) / whole[k].edge())) + 1;
+    const auto beyond = static_cast<std::int64_t>(std::ceil(2.0 * part.support * spacing * (1.0 + 1e-9) / whole[k].edge())) + 1;
     const auto n = static_cast<std::int64_t>(whole[k].nodes.size());
     std::int64_t first = static_cast<std::int64_t>(own.first[k]) - beyond, last = static_cast<std::int64_t>(own.last[k]) + beyond;
     GridAxis& axis = here[k];
@@ -236,7 +236,7 @@ PointCloud<D> brick_part(const Point<D>& size, const std::array<int, static_cast
   }
   PointCloud<D> piece = grid<D>(here, region);
 
-  CloudPart made{.rank = part.rank, .ranks = part.ranks, .whole = static_cast<std::size_t>(count), .surface = part.surface, .number = {}, .owner = {}, .complete = {}, .own = {}};
+  CloudPart made(part, static_cast<std::size_t>(count));
   const auto number = [&](const Node& node) {
     std::size_t n = 0;
     for (std::size_t k = whole.size(); k-- > 0;) n = n * whole[k].nodes.size() + node[k];
@@ -306,7 +306,7 @@ PointCloud<D> brick_part(const Point<D>& size, const std::array<int, static_cast
       const auto at = std::lower_bound(completes.begin(), completes.end(), std::pair(n, char{0}));
       places.emplace_back(n, static_cast<Index>(result.positions.size()));
       result.positions.push_back(positions[k]);
-      made.add(n, division.owner(node(n)), at != completes.end() && at->first == n && at->second != 0);
+      made.add(n, division.owner(node(n)), spacing, at != completes.end() && at->first == n && at->second != 0);
     }
   }
   std::sort(places.begin(), places.end());

@@ -26,7 +26,7 @@ namespace detail {
 
 /// The cloud with every interior particle moved at random: each component uniform in ± `fraction` times its
 /// shortest cell edge. Particles on facets stay. `fraction` is in [0, 0.5); the same seed gives the same cloud
-/// on every machine. Throws ParameterError for the fraction, GeometryError if a cell inverts.
+/// on every machine; a part of a regular grid is moved as the whole is (of other clouds, move the whole before part_of). Throws ParameterError for the fraction, GeometryError if a cell inverts.
 template <int D>
 [[nodiscard]] PointCloud<D> jitter(const PointCloud<D>& cloud, double fraction, std::uint64_t seed = 1);
 

@@ -12,23 +12,39 @@
 
 namespace tactoid {
 
-/// What of a cloud one of several processes (ranks) has: the particles that belong to it, and around them what its rows may touch (cloud_part.hpp). Particles are numbered anew.
-struct CloudPart {
-  int rank = 0;                ///< whose part it is
-  int ranks = 1;               ///< how many have parts
-  std::size_t whole = 0;       ///< particles of the whole cloud
-  bool surface = false;        ///< every rank has all particles on facets, as its first ones and in the same order, and all facets
-  std::vector<Index> number;   ///< per particle: its number in the whole cloud
-  std::vector<int> owner;      ///< per particle: the rank to which it belongs
-  std::vector<char> complete;  ///< per particle: 1 where all its cells are here
-  std::vector<Index> own;      ///< particles that belong to this rank, ascending
+/// Whose part of a cloud is wanted:
+///
+///   mpi::Session session(argc, argv);
+///   const Rkpm<3> kernel{};
+///   const Part part{.rank = session.rank(), .ranks = session.size(), .support = kernel.support};
+///   Body block{"block", box_part({.size = …, .cells = …}, part), kernel, …};
+struct Part {
+  int rank = 0;           ///< in [0, ranks)
+  int ranks = 1;          ///< >= 1
+  double support = 0.0;   ///< of the kernel, in spacings, > 0
+  bool surface = false;   ///< with all facets and the particles on them: for a body that takes part in contacts, or in boundary terms other than prescribed motions
+  void validate() const;  ///< throws ParameterError for a value that is not in its range
+};
+
+/// What of a cloud one of several processes (ranks) has: the particles that belong to it, and around them what its rows may touch (box_part, part_of). Particles are numbered anew.
+struct CloudPart : Part {
+  /// No particles yet, of a cloud of `particles`. Its facets are those of the whole where `surface`, and particles on them are the first ones, in the same order on every rank.
+  CloudPart(const Part& wanted, std::size_t particles) : Part(wanted), whole(particles) {}
+
+  std::size_t whole;            ///< particles of the whole cloud
+  std::vector<Index> number;    ///< per particle: its number in the whole cloud
+  std::vector<int> owner;       ///< per particle: the rank to which it belongs
+  std::vector<double> spacing;  ///< per particle: its longest edge in the whole cloud, m
+  std::vector<char> complete;   ///< per particle: 1 where all its cells are here
+  std::vector<Index> own;       ///< particles that belong to this rank, ascending
 
   [[nodiscard]] bool is_own(std::size_t i) const { return owner[i] == rank; }  ///< particle i belongs to this rank
   /// One more particle.
-  void add(Index number_in_whole, int rank_of, bool has_all_cells) {
+  void add(Index number_in_whole, int rank_of, double longest_edge, bool has_all_cells) {
     if (rank_of == rank) own.push_back(static_cast<Index>(number.size()));
     number.push_back(number_in_whole);
     owner.push_back(rank_of);
+    spacing.push_back(longest_edge);
     complete.push_back(has_all_cells ? 1 : 0);
   }
 };
@@ -90,3 +106,7 @@ template <int D, class Predicate>
 }
 
 }  // namespace tactoid
+
+#if !defined(TACTOID_COMPILED)
+#include <tactoid/geometry/point_cloud.ipp>
+#endif

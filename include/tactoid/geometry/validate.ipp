@@ -20,7 +20,7 @@ void validate(const PointCloud<D>& cloud) {
   if (cloud.positions.empty()) throw GeometryError("The point cloud has no particles.");
   if (cloud.cells.empty()) throw GeometryError("The point cloud has no cells.");
   if (const CloudPart* part = cloud.part.get())
-    if (part->number.size() != cloud.size() || part->owner.size() != cloud.size() || part->complete.size() != cloud.size())
+    if (part->number.size() != cloud.size() || part->owner.size() != cloud.size() || part->spacing.size() != cloud.size() || part->complete.size() != cloud.size())
       throw GeometryError(fmt::format("The cloud has {} particles, but is said to be a part of {} ones.", cloud.size(), part->number.size()));
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (!cloud.positions[i].allFinite())

@@ -78,13 +78,13 @@ class DividedBodies final : public Decomposition {
     whole_->end();
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       if (parts_[b]->part)
-        for (Field* field : bodies_[b].whole) parts_[b]->exchange(*field);
+        for (Field* field : bodies_[b].whole) parts_[b]->tell_all(*field);
     // Buffers of whole bodies would be most of what a rank holds; implicit steps ask for them all the time.
     if (std::none_of(bodies_.begin(), bodies_.end(), [](const SharedBody& body) { return body.keep_rows; })) whole_.reset();
   }
   [[nodiscard]] double sum(std::size_t body, std::span<const double> terms) override { return sums_[body](terms); }
   [[nodiscard]] std::string told_by_owner(std::size_t body, std::size_t point, const std::string& text) override {
-    const int owner = parts_[body]->part ? parts_[body]->failed_rank : parts_[body]->point_owner[point];
+    const int owner = parts_[body]->point_owner[point];
     return "rank " + std::to_string(owner) + ": " + ranks_.text_of(owner, text);
   }
 
@@ -100,7 +100,10 @@ class DividedBodies final : public Decomposition {
     Fingerprint fingerprint;
     for (const SharedBody& body : bodies_) {
       if (body.part) {
-        fingerprint.add(std::uint64_t{body.part->whole});
+        fingerprint.add(std::uint64_t{body.part->whole}), fingerprint.add(std::uint64_t{body.part->surface}), fingerprint.add(body.part->support);
+        fingerprint.add(std::uint64_t{body.region_cost.size()});
+        for (Index i = 0; body.part->surface && i < body.table->particles && body.known_to_all[i]; ++i)  // the first ones
+          for (int k = 0; k < 3; ++k) fingerprint.add(body.table->particle_position[i][k]);
         continue;
       }
       fingerprint.add(std::uint64_t{body.table->particles});
@@ -114,6 +117,13 @@ class DividedBodies final : public Decomposition {
           for (int k = 0; k < 3; ++k) fingerprint.add(x[k]);
     }
     ranks_.require_same("simulation", fingerprint.text());
+    for (const SharedBody& body : bodies_) {
+      if (!body.part) continue;
+      double particles = static_cast<double>(body.part->own.size());
+      reduce(comm_, {&particles, 1}, {});
+      if (particles != static_cast<double>(body.part->whole))
+        throw ParameterError(fmt::format("The parts of a cloud have {:.0f} particles of their own together, and the whole has {}: they are not of one division.", particles, body.part->whole));
+    }
   }
   /// For each rank the particles that it owns, of those that are included; of a body in parts these must be the same on all ranks, in the same order.
   template <class Include>

@@ -130,14 +130,19 @@ class PartOfBody final : public BodyShare {
   }
   void complete(std::span<double> values) override {
     if (!part) return OwnedValues(ranks_, particle_owner).gather(values, 1);
-    std::vector<std::vector<Index>> asked = lists();
-    for (Index i = 0; i < values.size(); ++i)
-      if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
-    ParcelsToNeighbors copies(ranks_, parcels_of(1, named_by_others(asked)), parcels_of(1, asked));
     Field field(values.size(), Vector4::Zero());
     for (const Index i : own) field[i][0] = values[i];
-    send(copies, field);
+    tell_all(field);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = field[i][0];
+  }
+  void tell_all(Field& field) override {
+    if (!copies_) {
+      std::vector<std::vector<Index>> asked = lists();
+      for (Index i = 0; i < particle_owner.size(); ++i)
+        if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
+      copies_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, named_by_others(asked)), parcels_of(1, asked));
+    }
+    send(*copies_, field);
   }
   [[nodiscard]] bool sums(std::size_t p) const override { return summing_[p] == rank_; }
   void bring_to_parts(Field& field) override {
@@ -263,8 +268,8 @@ class PartOfBody final : public BodyShare {
   bool keep_rows_ = false;
   OwnedValues chunk_values_;
   std::vector<int> summing_;                                // the rank of each part of a sum
-  std::unique_ptr<OwnedValues> point_values_;               // made when it is first needed, as the next two
-  std::unique_ptr<ParcelsToNeighbors> ghosts_, to_parts_;
+  std::unique_ptr<OwnedValues> point_values_;               // made when it is first needed, as the next three
+  std::unique_ptr<ParcelsToNeighbors> ghosts_, copies_, to_parts_;
   std::unique_ptr<ParcelsToNeighbors> back_;               // of forces
   std::vector<std::size_t> given_counts_, taken_counts_;  // per rank
   bool points_travel_ = false;                           // on any rank

@@ -29,10 +29,11 @@ struct ProbeReading {
 template <int D>
 class Probe {
  public:
-  /// Points in the reference configuration, m. Throws GeometryError that names the point that too few particles reach.
+  /// Points in the reference configuration, m. Throws GeometryError that names the point that too few particles reach; ParameterError for a body of which each process has a part.
   template <class Body>
     requires(Body::dimension == D)
   Probe(const Body& body, std::vector<Point<D>> points) : points_(std::move(points)) {
+    if (body.in_parts()) throw ParameterError("Probe in body " + in_quotes(body.name()) + ": each process has a part of its cloud, and none knows all around a point.");
     try {
       shapes_ = shape_functions(body.kernel(), body.cloud(), points_);
     } catch (const GeometryError& error) {

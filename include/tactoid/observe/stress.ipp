@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include <tactoid/core/compiled.hpp>
 #include <tactoid/kinematics/kinematics.hpp>
@@ -42,18 +43,27 @@ TACTOID_INLINE StressFields detail::stress_fields(const PointTable& table, const
   return s;
 }
 
-TACTOID_INLINE RegionStatistics region_statistics(const PointTable& table, const std::vector<double>& at_points,
-                                                  Index region) {
+TACTOID_INLINE RegionStatistics detail::region_statistics(const PointTable& table, const std::vector<double>& at_points, Index region, RowShare* share) {
   RegionStatistics r;
   double volume = 0.0;
   for (std::size_t q = 0; q < table.points(); ++q) {
-    if (table.region[q] != region) continue;
+    if (table.region[q] != region || (share != nullptr && share->particle_owner[table.owner[q]] != share->rank())) continue;
     r.mean += table.volume[q] * at_points[q];
     r.max = std::max(r.max, at_points[q]);
     volume += table.volume[q];
   }
+  if (share != nullptr) {
+    std::array<double, 2> sums{r.mean, volume};
+    share->reduce(sums, {&r.max, 1});
+    r.mean = sums[0];
+    volume = sums[1];
+  }
   if (volume > 0.0) r.mean /= volume;
   return r;
+}
+
+TACTOID_INLINE RegionStatistics region_statistics(const PointTable& table, const std::vector<double>& at_points, Index region) {
+  return detail::region_statistics(table, at_points, region, nullptr);
 }
 
 }  // namespace tactoid

@@ -26,10 +26,11 @@ template <int D>
 
 /// Writes one body at the present state as a VTU file: its background cells and its particles (as vertices), at their
 /// current positions, with displacement (m), velocity (m/s), effective_stress, pressure (Pa), J, region, director, and
-/// gap (m; signed, NaN for particles that are not on the surface) where `gaps` is given. Throws FileError.
+/// gap (m; signed, NaN for particles that are not on the surface) where `gaps` is given. Throws FileError; ParameterError for a body of which each process has a part.
 template <class Body>
 void write_body_frame(const std::filesystem::path& path, const Body& body, const ParticleFields& fields,
                       const StressFields& stress, double time, std::span<const double> gaps = {}) {
+  if (body.in_parts()) throw ParameterError("write_body_frame: each process has a part of body " + in_quotes(body.name()) + "; write_body_pieces writes them.");
   std::vector<Index> all(body.size());
   std::iota(all.begin(), all.end(), Index{0});
   detail::body_grid<Body::dimension>(body.table(), body.director, fields, stress, time, gaps, all, all.size(), body.cloud().cells).write(path);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Needs HDF5; no other header of the library does, and neither <tactoid/tactoid.hpp> nor all.hpp includes this one:
+// Needs HDF5 (core/hdf5.hpp); neither <tactoid/tactoid.hpp> nor all.hpp includes this header:
 //   find_package(HDF5 REQUIRED COMPONENTS C)
 //   target_link_libraries(my_program PRIVATE tactoid::tactoid hdf5::hdf5)
 
@@ -20,12 +20,10 @@
 #include <utility>
 #include <vector>
 
-#include <unistd.h>
-
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/hdf5.hpp>
 #include <tactoid/core/ranks.hpp>
 #include <tactoid/core/read_file.hpp>
 #include <tactoid/core/state.hpp>
@@ -45,54 +43,6 @@ struct Checkpoint {
 inline constexpr int checkpoint_format = 1;
 
 namespace detail {
-
-/// Closes an HDF5 identifier.
-class Hdf5 {
- public:
-  Hdf5(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id_ < 0) throw FileError("HDF5 refused a part of a checkpoint.");
-  }
-  Hdf5(const Hdf5&) = delete;
-  Hdf5& operator=(const Hdf5&) = delete;
-  ~Hdf5() { close_(id_); }
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-inline void hdf5_succeeded(herr_t result) {
-  if (result < 0) throw FileError("HDF5 refused a part of a checkpoint.");
-}
-/// HDF5 tells its errors here, not on the error output.
-struct QuietHdf5 {
-  QuietHdf5() {
-    H5Eget_auto2(H5E_DEFAULT, &function, &data);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, function, data); }
-  QuietHdf5(const QuietHdf5&) = delete;
-  QuietHdf5& operator=(const QuietHdf5&) = delete;
-  H5E_auto2_t function = nullptr;
-  void* data = nullptr;
-};
-
-inline void write_attribute(hid_t object, const char* name, std::string_view text) {
-  const Hdf5 type(H5Tcopy(H5T_C_S1), H5Tclose);
-  hdf5_succeeded(H5Tset_size(type, text.empty() ? 1 : text.size()));
-  hdf5_succeeded(H5Tset_cset(type, H5T_CSET_UTF8));
-  const Hdf5 space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5 attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  hdf5_succeeded(H5Awrite(attribute, type, text.empty() ? "" : text.data()));
-}
-[[nodiscard]] inline std::string read_attribute(hid_t object, const char* name) {
-  const Hdf5 attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  const Hdf5 type(H5Aget_type(attribute), H5Tclose);
-  std::string text(H5Tget_size(type), '\0');
-  hdf5_succeeded(H5Aread(attribute, type, text.data()));
-  while (!text.empty() && text.back() == '\0') text.pop_back();
-  return text;
-}
 
 /// SI units of what users read out of a checkpoint, by the last part of the name; empty where there is none to tell.
 [[nodiscard]] inline std::string_view unit_of(std::string_view name) {
@@ -171,23 +121,6 @@ inline void write_set(hid_t file, const std::string& name, const StateArray& arr
   if (!array.values.empty()) hdf5_succeeded(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
 }
 
-/// Rows [first, first + count) of a data set of lists.
-struct SetRows {
-  std::vector<hsize_t> start, extent;
-  SetRows(std::size_t first, std::size_t count, std::size_t width, bool vectors) : start{first}, extent{count} {
-    if (vectors) start.push_back(0), extent.push_back(width);
-  }
-  /// Writes them with H5Dwrite, or reads them with H5Dread.
-  template <class Transfer, class Numbers>
-  void transfer(hid_t set, const Transfer& how, Numbers* numbers) const {
-    const Hdf5 space(H5Dget_space(set), H5Sclose), memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
-    hdf5_succeeded(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr));
-    hdf5_succeeded(how(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, numbers));
-  }
-};
-/// So many rows of a list are in the memory of one process at a time.
-inline constexpr std::size_t rows_at_a_time = std::size_t{1} << 16;
-
 /// A data set of which several processes have rows each: they come to the first one piece by piece; what nobody has is 0. `set` is used there alone; where it cannot be written to,
 /// all go on, and the first one's `failure` says so. Collective.
 inline void write_rows(const hid_t* set, const StateArray& array, std::string& failure) {
@@ -210,7 +143,7 @@ inline void write_rows(const hid_t* set, const StateArray& array, std::string& f
     piece.assign(count * width, 0.0);
     for (std::size_t k = 0; k < list.size(); k += width + 1) std::copy_n(list.data() + k + 1, width, piece.data() + static_cast<std::size_t>(list[k]) * width);
     try {
-      SetRows(first, count, width, array.shape.size() > 1).transfer(*set, H5Dwrite, piece.data());
+      SetRows(first, count, width, array.shape.size() > 1).transfer(*set, H5Dwrite, H5T_NATIVE_DOUBLE, piece.data());
     } catch (const FileError& error) {
       failure = error.what();
     }
@@ -220,7 +153,7 @@ inline void write_rows(const hid_t* set, const StateArray& array, std::string& f
 /// Writes a checkpoint of which several processes have rows each. Collective; throws FileError on all of them.
 inline void write_checkpoint_in_rows(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   const bool writes = is_first_rank();
-  const std::filesystem::path temporary = path.string() + ".part";
+  std::optional<AtomicFile> out;
   std::string failure;
   const auto attempt = [&](const auto& work) {
     if (!writes || !failure.empty()) return;
@@ -234,10 +167,10 @@ inline void write_checkpoint_in_rows(const std::filesystem::path& path, const Ch
     const QuietHdf5 quiet;
     std::optional<Hdf5> file;
     attempt([&] {
-      { AtomicFile probe(path); }  // tells by the system's reason where no file can be
+      out.emplace(path);
       const Hdf5 creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
       hdf5_succeeded(H5Pset_userblock(creation, checkpoint_head_size));
-      file.emplace(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose);
+      file.emplace(H5Fcreate(out->temporary().c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose);
       write_about(*file, checkpoint);
     });
     for (const auto& [name, array] : checkpoint.state) {
@@ -257,17 +190,15 @@ inline void write_checkpoint_in_rows(const std::filesystem::path& path, const Ch
     attempt([&] { hdf5_succeeded(H5Fflush(*file, H5F_SCOPE_GLOBAL)); });
   }
   attempt([&] {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "r+b"), std::fclose);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(out->temporary().c_str(), "rb"), std::fclose);
     if (file == nullptr || std::fseek(file.get(), checkpoint_head_size, SEEK_SET) != 0) fail_file("write", path, errno);
     ByteHash hash;
     std::string bytes(std::size_t{1} << 20, '\0');
     for (std::size_t n = 0; (n = std::fread(bytes.data(), 1, bytes.size(), file.get())) > 0;) hash.add(std::string_view(bytes).substr(0, n));
-    const std::string head = checkpoint_head(hash);
-    if (std::ferror(file.get()) || std::fseek(file.get(), 0, SEEK_SET) != 0 || std::fwrite(head.data(), 1, head.size(), file.get()) != head.size() || std::fflush(file.get()) != 0 ||
-        ::fsync(::fileno(file.get())) != 0 || std::rename(temporary.c_str(), path.c_str()) != 0)
-      fail_file("write", path, errno);
+    if (std::ferror(file.get())) fail_file("write", path, errno);
+    out->write(checkpoint_head(hash));  // at the beginning, which HDF5 has left free
+    out->commit(true);
   });
-  if (writes && !failure.empty()) std::remove(temporary.c_str());
   if (Ranks::current != nullptr) failure = Ranks::current->first_failure(failure);
   if (!failure.empty()) throw FileError(failure);
 }
@@ -333,9 +264,9 @@ namespace detail {
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return array.rows[a] < array.rows[b]; });
   std::vector<double> piece;
   for (auto next = order.begin(); next != order.end();) {
-    const std::size_t first = array.rows[*next], count = std::min(rows_at_a_time, array.length - first);
+    const std::size_t first = array.rows[*next], count = std::min(rows_at_a_time, array.rows[order.back()] + 1 - first);
     piece.resize(count * width);
-    SetRows(first, count, width, shape.size() > 1).transfer(set, H5Dread, piece.data());
+    SetRows(first, count, width, shape.size() > 1).transfer(set, H5Dread, H5T_NATIVE_DOUBLE, piece.data());
     for (; next != order.end() && array.rows[*next] < first + count; ++next)
       std::copy_n(piece.data() + (array.rows[*next] - first) * width, width, array.values.data() + *next * width);
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <exception>
 #include <functional>
 #include <memory>
 #include <span>
@@ -48,22 +47,9 @@ class DividedBuild {
   /// Takes note of the share of this rank when the table has its rows: colours its chunks. Collective.
   void share_part(PointTable& table, std::shared_ptr<const CloudPart> part, std::size_t points_per_chunk);
 
-  /// Does what each rank does for itself. What it throws on the first rank that fails is thrown on all: a ParameterError, or else a GeometryError. Collective.
+  /// Does what each rank does for itself, as Ranks::together().
   template <class F>
-  void together(const F& work) const {
-    std::string failure;
-    try {
-      work();
-    } catch (const ParameterError& error) {
-      failure = std::string("P") + error.what();
-    } catch (const std::exception& error) {
-      failure = std::string("G") + error.what();
-    }
-    const std::string first = ranks_.first_failure(failure);
-    if (first.empty()) return;
-    if (first.front() == 'P') throw ParameterError(first.substr(1));
-    throw GeometryError(first.substr(1));
-  }
+  void together(const F& work) const { ranks_.together(work); }
 
   [[nodiscard]] const std::shared_ptr<RowShare>& share() const { return share_; }  ///< of this rank, after divide() or share_part()
 

@@ -128,7 +128,7 @@ TACTOID_INLINE RowsToMake DividedBuild::rows_of(const PointTable& table, const C
 }
 
 TACTOID_INLINE void DividedBuild::share_part(PointTable& table, std::shared_ptr<const CloudPart> part, std::size_t points_per_chunk) {
-  color_chunks(table, points_per_chunk, part.get());
+  together([&] { color_chunks(table, points_per_chunk, part.get()); });
   share_ = ranks_.share_of(table, std::move(part));
 }
 

@@ -76,7 +76,12 @@ struct NodalCentroids {
       const auto place = [&](const auto& cell) { return std::tuple(cell.region, part != nullptr && !part->is_own(cell.particle), cell.particle); };
       return place(a) < place(b);
     });
-    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, longest_edges(cloud), false, divided);
+    std::vector<double> spacing = longest_edges(cloud);
+    if (part != nullptr) {
+      if (divided != nullptr) divided->together([&] { take_spacings(*part, kernel.support, spacing); });
+      else take_spacings(*part, kernel.support, spacing);
+    }
+    return table_of<K::dimension>(cloud, kernel.support, rows_of(kernel), cells, spacing, false, divided);
   }
 
   /// The table of a cloud that has moved, with the points and the volumes that moved with it: `cells`, sorted by region. Only
@@ -112,6 +117,9 @@ struct NodalCentroids {
       for (const KernelNeighbor<D>& n : near) row.weight.push_back(K::Window::value(n.offset.norm() / n.support));
     };
   }
+
+  /// Spacings of particles that lack cells, as they are in the whole. Throws ParameterError where the part was not made for supports as large as those here.
+  static void take_spacings(const CloudPart& part, double support, std::vector<double>& spacing);
 
   template <int D>
   [[nodiscard]] PointTable table_of(const PointCloud<D>& cloud, double support, const RowsOf<D>& rows_of_points,

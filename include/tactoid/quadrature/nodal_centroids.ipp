@@ -18,6 +18,15 @@ TACTOID_INLINE void NodalCentroids::validate() const {
   require_non_negative("NodalCentroids.consistency_tolerance", consistency_tolerance);
 }
 
+TACTOID_INLINE void NodalCentroids::take_spacings(const CloudPart& part, double support, std::vector<double>& spacing) {
+  for (std::size_t i = 0; i < spacing.size(); ++i) {
+    if (!part.complete[i]) spacing[i] = part.spacing[i];
+    if (support * spacing[i] > part.support * part.spacing[i] * (1.0 + 1e-9))
+      throw ParameterError(fmt::format("The part of the cloud that rank {} has was made for a support of {:.6g} m of particle {}, which has {:.6g} m: make it with a larger Part::support.", part.rank,
+                                       part.support * part.spacing[i], part.number[i], support * spacing[i]));
+  }
+}
+
 template <int D>
 void NodalCentroids::fill_rows(PointTable& table, std::vector<double>& weights, const PointCloud<D>& cloud, const std::vector<double>& supports, const RowsOf<D>& rows_of_points,
                                const RowsToMake& rows) const {
@@ -46,14 +55,6 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
                                     const std::vector<NodalCell<D>>& cells, const std::vector<double>& spacing, bool moved, DividedBuild* divided) const {
   std::vector<double> supports = spacing;
   for (double& radius : supports) radius *= support;
-  // Beyond the complete particles of a part supports are not known: as large as any, they tell where a row would need them.
-  if (cloud.part) {
-    double most = 0.0;
-    for (std::size_t i = 0; i < supports.size(); ++i)
-      if (cloud.part->complete[i]) most = std::max(most, supports[i]);
-    for (std::size_t i = 0; i < supports.size(); ++i)
-      if (!cloud.part->complete[i]) supports[i] = most;
-  }
 
   PointTable table = empty_table(cloud);
   for (const NodalCell<D>& cell : cells) {

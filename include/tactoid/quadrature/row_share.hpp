@@ -43,13 +43,15 @@ class RowShare {
   [[nodiscard]] virtual int rank() const = 0;
   /// Tells the values of own particles to the ranks whose rows touch them, three components. Collective.
   virtual void exchange(Field& field) = 0;
+  /// Tells the values of own particles to all ranks that have them, three components; where each has a part of the cloud. Collective.
+  virtual void tell_all(Field& field) = 0;
   /// Tells the values of own particles to all ranks that have them. Collective.
   virtual void complete(std::span<double> values) = 0;
   /// Whether this rank adds up part p of sums over the particles of the whole (sum_part).
   [[nodiscard]] virtual bool sums(std::size_t p) const = 0;
   /// Tells the values of own particles to the ranks that add up their parts, three components. Collective.
   virtual void bring_to_parts(Field& field) = 0;
-  /// Sums over the ranks of numbers that all but one of them give as 0: exact. Collective.
+  /// Sums over the ranks, in any order: of numbers that all but one of them give as 0 they are exact. Collective.
   virtual void combine(std::span<double> values) = 0;
   /// Sums and maxima over the ranks, of what each gives; sums rank after rank. Collective.
   virtual void reduce(std::span<double> sums, std::span<double> maxima) = 0;

@@ -75,7 +75,8 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   Body(std::string name, PointCloud<dimension> cloud, KernelType kernel, QuadratureType quadrature, Materials<Ms...> materials,
        Director director_law, const Initial& initial)
       : name_(std::move(name)), cloud_(std::move(cloud)), kernel_(kernel), quadrature_(quadrature), director_law_(director_law) {
-    tactoid::validate(cloud_);
+    if (cloud_.part && Ranks::current != nullptr) Ranks::current->together([&] { tactoid::validate(cloud_); });
+    else tactoid::validate(cloud_);
     kernel_.validate();
     director_law_.validate();
     build_table(materials);
@@ -293,13 +294,14 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     if (!earlier_.empty()) relative_ = displacement_in_table();
     const Loop loop = force_loop();
     for_each_chunk(table_, [&](const PointChunk& chunk, std::size_t c) {
+      const bool keep = advance && is_counted(c);  // the first points of other processes share a block with the last own ones
       visit(chunk.region, [&](auto& region) {
         if constexpr (Loop::template always_with_rates<std::decay_t<decltype(region)>>)
-          chunks_[c] = loop.template pass<true>(region, chunk, time_step, advance);
+          chunks_[c] = loop.template pass<true>(region, chunk, time_step, keep);
         else if (needs_rate(region))
-          chunks_[c] = loop.template pass<true>(region, chunk, time_step, advance);
+          chunks_[c] = loop.template pass<true>(region, chunk, time_step, keep);
         else
-          chunks_[c] = loop.template pass<false>(region, chunk, time_step, advance);
+          chunks_[c] = loop.template pass<false>(region, chunk, time_step, keep);
       });
     });
     if (share_) meet_other_ranks();
@@ -311,8 +313,10 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     for_each_region([](auto& region, Index) { std::swap(region.histories, region.advanced); });
   }
 
-  /// The first point whose volume ratio is not positive (or is NaN) after add_internal_forces; points() if none.
+  /// The first point whose volume ratio is not positive (or is NaN) after add_internal_forces; points() if none. Where each process has a part, of this one: the others know failed_rank().
   [[nodiscard]] std::size_t failed_point() const { return found_.failure == no_failure ? table_.points() : found_.failure; }
+  /// Of a body in parts: the first process that has such a point; -1 if none.
+  [[nodiscard]] int failed_rank() const { return found_.failed_rank; }
 
   // --- stable step -------------------------------------------------------------------------------------------
   /// Largest squared wave number that region r's points carry in the present configuration, 1/m², as bounded by
@@ -398,8 +402,12 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     const StateRows of_particles = particle_rows(), of_points = point_rows();
     const StateRows* const particles = cloud_.part ? &of_particles : nullptr;
     const StateRows* const points = cloud_.part ? &of_points : nullptr;
-    archive.expect("reference", reference(), particles);
-    archive.expect("points", points != nullptr ? points->length : table_.points());
+    const auto expect = [&] {
+      archive.expect("reference", reference(), particles);
+      archive.expect("points", points != nullptr ? points->length : table_.points());
+    };
+    if (in_parts()) Ranks::current->together(expect);
+    else expect();
     restore_reference(archive);
     archive.expect("pairs", table_.pairs());
     archive.expect("bytes_per_pair", sizeof(Entry));
@@ -453,6 +461,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     std::vector<double> stretch = std::vector<double>(sizeof...(Ms), 0.0);  // of each region
     double largest_volume_ratio = 1.0;
     std::size_t failure = no_failure;
+    int failed_rank = -1;
   };
 
   /// Everything that depends on the rows of the table and not on their values.
@@ -716,8 +725,12 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     }
     for (Index& r : table_.region) r = number[r];
     for (PointChunk& chunk : table_.chunks) chunk.region = number[chunk.region];
-    (std::get<I>(laws_).prepare(std::get<I>(materials.regions).material, range[I].first, range[I].second, table_.position,
-                                quadrature_, table_.stabilization_scale), ...);
+    (std::get<I>(laws_).prepare(std::get<I>(materials.regions).material, range[I].first, range[I].second, table_.position), ...);
+    for_each_region([&](auto& region, Index) {
+      std::array<double, 4> limits = region.limits();
+      if (in_parts()) share_->reduce({}, limits);
+      region.settle(limits, quadrature_, table_.stabilization_scale);
+    });
   }
 
   void assemble_masses() {
@@ -736,6 +749,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
       }
     });
     if (share_) share_->complete(masses_);
+    if (in_parts()) share_->complete(volumes_);
     const OwnParticles summed(in_parts() ? share_.get() : nullptr, masses_.size());
     std::string failure;
     for (std::size_t k = 0; k < summed.size() && failure.empty(); ++k)
@@ -817,14 +831,18 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     }
   }
 
+  /// Whether a chunk counts here; otherwise the process counts it that owns it, and both evaluate it while the body is set up.
+  [[nodiscard]] bool is_counted(std::size_t chunk) const { return !in_parts() || share_->chunk_owner[chunk] == share_->rank(); }
+
   /// Sums up what was found in the chunks, of all processes.
   BodyTotals find_totals() {
     std::fill(found_.stretch.begin(), found_.stretch.end(), 0.0);
     found_.largest_volume_ratio = 0.0;
     found_.failure = no_failure;
+    found_.failed_rank = -1;
     BodyTotals totals;
     for (std::size_t c = 0; c < chunks_.size(); ++c) {
-      if (in_parts() && share_->chunk_owner[c] != share_->rank()) continue;  // another rank has it, too
+      if (!is_counted(c)) continue;
       totals += chunks_[c].totals;
       double& stretch = found_.stretch[table_.chunks[c].region];
       stretch = std::max(stretch, chunks_[c].stretch);
@@ -835,15 +853,14 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     std::array<double, 4> sums{totals.strain_energy, totals.stabilization_energy, totals.dissipated_power, totals.active_power};
     std::vector<double> maxima = found_.stretch;
     maxima.push_back(found_.largest_volume_ratio);
-    // The first point has the largest number; or the first rank, where each numbers its own ones.
+    // The first point has the largest number; or the first rank, where each numbers its own points.
     constexpr double first = 1e15;
-    const double failed = found_.failure == no_failure ? 0.0 : first - static_cast<double>(in_parts() ? static_cast<std::size_t>(share_->rank()) : found_.failure);
-    maxima.push_back(failed);
+    const double failed = static_cast<double>(in_parts() ? static_cast<std::size_t>(share_->rank()) : found_.failure);
+    maxima.push_back(found_.failure == no_failure ? 0.0 : first - failed);
     share_->reduce(sums, maxima);
     const auto failure = static_cast<std::size_t>(first - maxima.back());
-    if (maxima.back() == 0.0) found_.failure = no_failure;
-    else if (!in_parts()) found_.failure = failure;
-    else if (share_->failed_rank = static_cast<int>(failure); share_->failed_rank != share_->rank()) found_.failure = 0;  // some point: it is not here
+    if (in_parts()) found_.failed_rank = maxima.back() == 0.0 ? -1 : static_cast<int>(failure);
+    else found_.failure = maxima.back() == 0.0 ? no_failure : failure;
     maxima.pop_back();
     found_.largest_volume_ratio = maxima.back();
     maxima.pop_back();

@@ -30,6 +30,7 @@ struct ContactAnchoring {
     if (interval < 1) reject("ContactAnchoring.interval", interval, "", "at least 1");
     gaps.emplace<D>().initialize(cloud_a, a, cloud_b, b);
     touch.capture_distance = capture_distance;
+    touch.touched.assign(cloud_a.size(), 0);
   }
 
   /// Measures the gaps in every `interval`-th step; no force, no energy.
@@ -50,7 +51,7 @@ struct ContactAnchoring {
   template <class Archive>
   void state(Archive& archive) {
     archive.part("gaps", gaps);
-    archive.part("touch", touch);
+    gaps.visit([&](const auto& g) { state_at(archive, "touched", touch.touched, g.surface().nodes); });
     archive("countdown", countdown);
     archive("fresh", fresh);
     archive("last_time", last_time);

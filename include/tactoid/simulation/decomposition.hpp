@@ -28,7 +28,6 @@ class BodyShare : public RowShare {
   /// to which they belong are those of other ranks; and those where it is the other way round.
   std::vector<Index> abroad, given_points, taken_points;
   ///@}
-  int failed_rank = 0;  ///< where the ranks have parts of the cloud: the one at which the point is that failed
 
   /// Empties the rows that are not evaluated; does nothing where all rows must stay.
   virtual void drop_rows(PointTable& table) const = 0;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -37,6 +39,8 @@ struct RegionLaw {
   /// Wave speed squared and kinematic longitudinal viscosity, the largest over the region, m²/s² and m²/s.
   double wave_speed_squared = 0.0;
   double kinematic_viscosity = 0.0;  ///< see above, m²/s
+  double least_density = std::numeric_limits<double>::infinity();  ///< over the region, kg/m³
+  double softest = std::numeric_limits<double>::infinity();        ///< least shear modulus of the region, Pa
 
   [[nodiscard]] const Law& law(std::size_t q) const { return laws[graded ? q - begin : 0]; }  ///< at point q of the table
   /// Number of the block that holds point q.
@@ -77,11 +81,8 @@ struct RegionLaw {
     }
   }
 
-  /// `scale`, the stabilisation's factor per point of the table (empty without one), takes up how far a graded law's
-  /// stabilisation is above the least of the region, which is `stabilization`.
-  template <class Q>
-  void prepare(const M& material, std::size_t first, std::size_t last, const std::vector<Vector3>& positions,
-               const Q& quadrature, std::vector<double>& scale) {
+  /// The laws of points [first, last), and their limits. Then settle() is to be called.
+  void prepare(const M& material, std::size_t first, std::size_t last, const std::vector<Vector3>& positions) {
     begin = first;
     end = last;
     if constexpr (graded) {
@@ -89,15 +90,26 @@ struct RegionLaw {
     } else {
       laws.push_back(material);
     }
-    double softest = shear_modulus(laws.front());
     for (const Law& law : laws) {
       if constexpr (requires { law.validate(); }) law.validate();
       wave_speed_squared = std::max(wave_speed_squared, law.wave_speed() * law.wave_speed());
       kinematic_viscosity = std::max(kinematic_viscosity, viscosity_modulus(law) / law.density);
       softest = std::min(softest, shear_modulus(law));
+      least_density = std::min(least_density, law.density);
     }
     histories.resize((end - begin + width - 1) / static_cast<std::size_t>(width));
     advanced = histories;
+  }
+  /// What settle() takes; of several processes that have points of the region, the largest of each.
+  [[nodiscard]] std::array<double, 4> limits() const { return {wave_speed_squared, kinematic_viscosity, -least_density, -softest}; }
+  /// Takes the limits of the whole region. `scale`, the stabilisation's factor per point of the table (empty without one), takes up how far a graded law's
+  /// stabilisation is above the least of the region, which is `stabilization`.
+  template <class Q>
+  void settle(const std::array<double, 4>& of_all, const Q& quadrature, std::vector<double>& scale) {
+    wave_speed_squared = of_all[0];
+    kinematic_viscosity = of_all[1];
+    least_density = -of_all[2];
+    softest = -of_all[3];
     stabilization = quadrature.stabilization(softest);
     scale_stabilization(quadrature, scale);
   }

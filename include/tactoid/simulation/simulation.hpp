@@ -75,7 +75,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if (synchronous<I> && body.share() != nullptr)
         throw ParameterError("Body \"" + body.name() + "\": each process has made its own rows of it (SetUp::divided), and implicit steps need all rows; choose SetUp::whole, or explicit steps.");
       if (body.share() != nullptr && (Ranks::current == nullptr || Ranks::current->size() == 1))
-        throw ParameterError("Body \"" + body.name() + "\": several processes have made its rows (SetUp::divided), and their session is over.");
+        throw ParameterError("Body \"" + body.name() + "\": several processes have made its rows, and their session is over.");
       body.velocity_lag = velocity_lag;
       fields_[b].prepare(body);
       if (subcycling()) pace_[b].prepare(body.size());
@@ -87,10 +87,13 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       motions = with_axis_condition(body.cloud(), std::move(motions));
       if (body.in_parts())  // the others belong to other processes
         for (PrescribedMotion& motion : motions) std::erase_if(motion.particles, [&](Index i) { return i < body.size() && !body.cloud().part->is_own(i); });
-      essential_[b] = EssentialConditions(std::move(motions), body.particle_values(), fields_[b].reference, body.masses());
+      const auto make_conditions = [&] { essential_[b] = EssentialConditions(motions, body.particle_values(), fields_[b].reference, body.masses()); };
+      if (body.in_parts()) Ranks::current->together(make_conditions);
+      else make_conditions();
       (void)impose(body, b, 0.0, 0.0);
       if (body.in_parts())
-        for (Field* field : {&body.displacement, &body.velocity}) body.share()->exchange(*field);
+        for (Field* field : {&body.displacement, &body.velocity, &body.director})
+          if (!field->empty()) body.share()->tell_all(*field);
       fields_[b].refresh(body, 0.0);
     });
     for_each_contact([&](auto& between, std::size_t) {
@@ -188,9 +191,9 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     complete();
     const auto& body = std::get<N>(bodies_);
     Field v(body.size(), Vector4::Zero());
-    if (body.in_parts()) body.for_each_particle([&](std::size_t i) { v[i] = present_velocity(body, N, i); });
-    else
-      for (std::size_t i = 0; i < v.size(); ++i) v[i] = present_velocity(body, N, i);
+    const OwnParticles particles(body.in_parts() ? body.share() : nullptr, v.size());
+    for (std::size_t k = 0; k < particles.size(); ++k) v[particles[k]] = present_velocity(body, N, particles[k]);
+    if (body.in_parts()) body.share()->tell_all(v);
     return v;
   }
 
@@ -667,6 +670,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     if (time_step <= 0.0) return;
     const auto& law = body.director_law();
     body.for_each_particle([&](std::size_t i) {
+      if (body.in_parts() && !body.cloud().part->is_own(i)) return;
       if (!body.anchored.empty() && body.anchored[i]) return;
       const auto [A, J] = body.director_rate(i);
       const Vector3 h = body.director[i].template head<3>();
@@ -678,20 +682,30 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   template <class Body>
   void check(const Body& body, std::size_t b) const {
     const std::size_t q = body.failed_point();
+    if (body.in_parts()) {
+      if (const int rank = body.failed_rank(); rank >= 0)
+        throw ComputationError(fmt::format("rank {}: {}", rank, Ranks::current->text_of(rank, q < body.table().points() ? why_failed(body, q) : "")));
+      return;
+    }
     if (q == body.table().points()) return;
+    const std::string message = why_failed(body, q);
+    throw ComputationError(decomposition_ ? decomposition_->told_by_owner(b, q, message) : message);
+  }
+  /// About a point that is inverted, or not a number.
+  template <class Body>
+  [[nodiscard]] std::string why_failed(const Body& body, std::size_t q) const {
     const Index particle = body.table().owner[q];
     const Vector3 X = body.reference()[particle].template head<3>();
     const Vector4& u = body.displacement[particle];
     bool finite = u.allFinite();
     for (const TableEntry& entry : body.table().row(q)) finite = finite && body.displacement[entry.particle].allFinite();
-    const std::string message = fmt::format(
+    return fmt::format(
         "Body \"{}\", particle {} at X = ({:.4g}, {:.4g}, {:.4g}) m, u = ({:.3g}, {:.3g}, {:.3g}) m, t = {:.6g} s: {}.", body.name(), body.cloud().number(particle), X[0], X[1],
         X[2], u[0], u[1], u[2], time_,
         finite ? "the point is inverted (J <= 0); likely causes are a deformation too large for this resolution, a contact "
                  "too violent, or too weak a stabilisation"
                : "the displacement is not a number; likely causes are a time step above the stable one or a law "
                  "evaluated outside its range");
-    throw ComputationError(decomposition_ ? decomposition_->told_by_owner(b, q, message) : message);
   }
 
   /// Undoes the drift of a step whose evaluation broke down.
@@ -824,7 +838,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
   template <class Body, class Term>
   [[nodiscard]] double sum_over_particles(std::size_t b, const Body& body, const Term& term) {
-    if (body.in_parts()) return ParticleSums(body.share(), body.size())([&](std::size_t i) { return Vector4(term(i), 0.0, 0.0, 0.0); })[0];
+    if (!decomposition_ && body.in_parts()) return ParticleSums(body.share(), body.size())([&](std::size_t i) { return Vector4(term(i), 0.0, 0.0, 0.0); })[0];
     if (!decomposition_) return parallel_sum(body.size(), term);
     body.for_each_particle([&](std::size_t i) { terms_[i] = term(i); });
     return decomposition_->sum(b, terms_);

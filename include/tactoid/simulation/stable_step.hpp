@@ -82,7 +82,7 @@ class StableStep {
   template <class Region>
   [[nodiscard]] static double diffusivity(const Region& region) {
     const Stabilization& s = region.stabilization;
-    return region.kinematic_viscosity + 2.0 * s.modulus * s.damping_time / region.laws.front().density;
+    return region.kinematic_viscosity + 2.0 * s.modulus * s.damping_time / region.least_density;
   }
 
   /// Of the points of each region alone, at the present displacement, 1/m².

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include <tactoid/geometry/all.hpp>
+#include <tactoid/neighbors/part_of.hpp>
 
-namespace geometry_part_test {
+namespace neighbors_part_test {
 using namespace tactoid;
 
 /// What every division must have, of all parts of a cloud.
@@ -35,7 +36,6 @@ void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks,
     }
   }
   CHECK(std::count(owner.begin(), owner.end(), -1) == 0);
-  const double longest = *std::max_element(spacing.begin(), spacing.end());
   for (const PointCloud<D>& here : parts) {
     const CloudPart& part = *here.part;
     CAPTURE(part.rank);
@@ -47,6 +47,7 @@ void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks,
     for (std::size_t i = 0; i < here.size(); ++i) {
       const std::size_t of_whole = here.number(i);
       is_here[of_whole] = part.complete[i] ? 2 : 1;
+      off += std::abs(part.spacing[i] - spacing[of_whole]) > 1e-12 * spacing[of_whole] ? 1 : 0;
       places += here.positions[i] != whole.positions[of_whole] ? 1 : 0;
       owners += part.owner[i] != owner[of_whole] ? 1 : 0;
       if (!part.complete[i]) continue;
@@ -70,22 +71,35 @@ void check_division(const PointCloud<D>& whole, const MakePart& make, int ranks,
       }
       CHECK(others == 0);
     }
-    // Everything within two supports of an own particle is complete.
+    // Everything that a row may touch which touches an own particle is complete.
     std::size_t missing = 0;
     for (const Index i : part.own)
       for (std::size_t j = 0; j < whole.size(); ++j)
-        if (whole.difference(here.positions[i], whole.positions[j]).norm() <= 2.0 * support * longest && is_here[j] != 2) ++missing;
+        if (whole.difference(here.positions[i], whole.positions[j]).norm() <= support * (spacing[here.number(i)] + spacing[j]) && is_here[j] != 2) ++missing;
     CHECK(missing == 0);
   }
+}
+
+/// A part of one rank with its particles in the order of the whole.
+template <int D>
+PointCloud<D> in_order(const PointCloud<D>& part) {
+  PointCloud<D> whole = part;
+  whole.part = nullptr;
+  for (std::size_t i = 0; i < part.size(); ++i) whole.positions[part.number(i)] = part.positions[i];
+  const auto renumber = [&](auto& list) {
+    for (auto& entity : list)
+      for (Index& i : entity) i = static_cast<Index>(part.number(i));
+  };
+  renumber(whole.cells);
+  renumber(whole.facets);
+  return whole;
 }
 
 /// The box with its particles in rows, as box_part numbers them.
 PointCloud<3> in_rows(const Box& parameters) {
   PointCloud<3> cloud = box_part(parameters, {.rank = 0, .ranks = 1, .support = 2.0});
   CHECK(cloud.part->own.size() == cloud.size());
-  std::vector<Index> order(cloud.size());
-  for (Index i = 0; i < cloud.size(); ++i) order[cloud.number(i)] = i;
-  PointCloud<3> ordered = detail::kept_of(cloud, order);
+  const PointCloud<3> ordered = in_order(cloud);
   // It is the box.
   const PointCloud<3> same = box(parameters);
   CHECK(ordered.size() == same.size());
@@ -112,10 +126,8 @@ TEST_CASE("Parts of a box that are made without the whole") {
 TEST_CASE("Parts of a rectangle, periodic in one direction") {
   const Rectangle strip{.size = Point<2>(4.0, 1.0), .cells = {40, 7}, .periodic = {true, false}};
   const PointCloud<2> rows = rectangle_part(strip, {.support = 2.0});
-  std::vector<Index> order(rows.size());
-  for (Index i = 0; i < rows.size(); ++i) order[rows.number(i)] = i;
   for (const bool surface : {false, true})
-    for (const int ranks : {2, 3, 4}) check_division(detail::kept_of(rows, order), [&](const Part& part) { return rectangle_part(strip, part); }, ranks, 2.0, surface);
+    for (const int ranks : {2, 3, 4}) check_division(in_order(rows), [&](const Part& part) { return rectangle_part(strip, part); }, ranks, 2.0, surface);
 }
 
 TEST_CASE("Parts of any cloud") {
@@ -126,6 +138,14 @@ TEST_CASE("Parts of any cloud") {
   for (const int ranks : {2, 4}) check_division(around, [&](const Part& part) { return part_of(around, part); }, ranks, 1.2);
   const PointCloud<1> line = bar({.length = 1.0, .cells = 40});
   check_division(line, [&](const Part& part) { return part_of(line, part); }, 3, 2.0);
+}
+
+TEST_CASE("A part of a graded cloud reaches as far as its own supports") {
+  PointCloud<3> graded = box({.size = Point<3>(1.0, 1.0, 1.0), .cells = {20, 6, 6}});
+  for (Point<3>& X : graded.positions) X[0] = X[0] * X[0] * 4.0;  // edges from 0.01 to 0.39
+  for (const int ranks : {2, 4}) check_division(graded, [&](const Part& part) { return part_of(graded, part); }, ranks, 1.2);
+  const PointCloud<3> fine = part_of(graded, {.rank = 0, .ranks = 4, .support = 1.2});
+  CHECK(fine.size() < graded.size() / 2);  // twice the largest support would be all of it
 }
 
 TEST_CASE("Particles that are moved at random are moved alike in a part and in the whole") {
@@ -149,4 +169,4 @@ TEST_CASE("Parts that cannot be are refused") {
   CHECK_THROWS_AS((void)part_where(one, [](const Point<3>&) { return true; }), ParameterError);
 }
 
-}  // namespace geometry_part_test
+}  // namespace neighbors_part_test
