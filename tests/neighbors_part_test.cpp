@@ -148,6 +148,19 @@ TEST_CASE("A part of a graded cloud reaches as far as its own supports") {
   CHECK(fine.size() < graded.size() / 2);  // twice the largest support would be all of it
 }
 
+TEST_CASE("So many particles that they are divided by a sample") {
+  const PointCloud<1> line = bar({.length = 1.0, .cells = 2400000});
+  CHECK(line.size() > 2 * detail::sampled_particles);
+  std::size_t all = 0;
+  for (int rank = 0; rank < 3; ++rank) {
+    const PointCloud<1> here = part_of(line, {.rank = rank, .ranks = 3, .support = 2.0});
+    CHECK(here.part->own.size() == doctest::Approx(800000.0).epsilon(1e-4));
+    CHECK(here.size() <= here.part->own.size() + 2 * 5);
+    all += here.part->own.size();
+  }
+  CHECK(all == line.size());
+}
+
 TEST_CASE("Particles that are moved at random are moved alike in a part and in the whole") {
   const PointCloud<3> cloud = box({.size = Point<3>(2.0, 1.0, 1.0), .cells = {12, 5, 5}});
   const PointCloud<3> moved = jitter(cloud, 0.2), here = jitter(part_of(cloud, {.rank = 1, .ranks = 3, .support = 1.0}), 0.2);

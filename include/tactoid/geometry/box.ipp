@@ -43,20 +43,19 @@ struct GridAxis {
   [[nodiscard]] double place(std::size_t k) const { return origin + size * (static_cast<double>(nodes[k]) / static_cast<double>(cells)); }
   [[nodiscard]] std::size_t cells_here() const { return nodes.size() - (closed ? 0 : 1); }
 };
-template <int D>
-using GridAxes = std::vector<GridAxis>;  // D of them
+using GridAxes = std::vector<GridAxis>;  // one for each dimension
 
 template <int D>
-[[nodiscard]] GridAxes<D> grid_axes(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells, const std::array<bool, static_cast<std::size_t>(D)>& periodic,
+[[nodiscard]] GridAxes grid_axes(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells, const std::array<bool, static_cast<std::size_t>(D)>& periodic,
                                     const Point<D>& origin) {
-  GridAxes<D> axes;
+  GridAxes axes;
   for (int k = 0; k < D; ++k) axes.emplace_back(origin[k], size[k], cells[static_cast<std::size_t>(k)], periodic[static_cast<std::size_t>(k)]);
   return axes;
 }
 
 /// Particles and cells of a grid, row by row; facets are those of what is here.
 template <int D>
-[[nodiscard]] PointCloud<D> grid(const GridAxes<D>& axes, const std::string& region) {
+[[nodiscard]] PointCloud<D> grid(const GridAxes& axes, const std::string& region) {
   PointCloud<D> cloud;
   cloud.regions = {region};
   std::size_t node_count = 1;
@@ -105,39 +104,66 @@ PointCloud<D> brick(const Point<D>& size, const std::array<int, static_cast<std:
   return morton_ordered(grid<D>(grid_axes<D>(size, cells, periodic, origin), region));
 }
 
-/// Whether all nodes of a facet lie on one side of a grid.
-template <int D, class Facet, class NodeOf>
-[[nodiscard]] bool is_on_one_side(const GridAxes<D>& axes, const Facet& facet, const NodeOf& node) {
-  for (std::size_t k = 0; k < axes.size(); ++k)
-    for (const std::size_t side : {std::size_t{0}, std::size_t{axes[k].nodes.back()}})
-      if (!axes[k].periodic && std::all_of(facet.begin(), facet.end(), [&](Index i) { return node(i)[k] == side; })) return true;
-  return false;
-}
+/// Numbers of the nodes of a grid, row by row.
+template <int D>
+class GridNumbers {
+ public:
+  using Node = std::array<std::size_t, static_cast<std::size_t>(D)>;
+  /// Of a whole grid, or of a piece: places of nodes are then those in the whole.
+  explicit GridNumbers(const GridAxes& axes) : axes_(axes) {}
+  [[nodiscard]] double count() const {
+    double n = 1.0;
+    for (const GridAxis& axis : axes_) n *= static_cast<double>(axis.nodes.size());
+    return n;
+  }
+  [[nodiscard]] Index number(const Node& node) const {
+    std::size_t n = 0;
+    for (std::size_t k = axes_.size(); k-- > 0;) n = n * axes_[k].nodes.size() + node[k];
+    return static_cast<Index>(n);
+  }
+  [[nodiscard]] Node node(Index number) const {
+    Node node;
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+      node[k] = axes_[k].nodes[number % axes_[k].nodes.size()];
+      number = static_cast<Index>(number / axes_[k].nodes.size());
+    }
+    return node;
+  }
+  [[nodiscard]] Point<D> place(const Node& node) const {
+    Point<D> X;
+    for (std::size_t k = 0; k < axes_.size(); ++k) X[static_cast<int>(k)] = axes_[k].place(node[k]);
+    return X;
+  }
+  /// Whether all of some nodes lie on one side of the whole grid, which is no side where it is periodic.
+  template <class Nodes>
+  [[nodiscard]] bool on_one_side(const Nodes& nodes) const {
+    for (std::size_t k = 0; k < axes_.size(); ++k)
+      for (const std::size_t side : {std::size_t{0}, std::size_t{axes_[k].nodes.back()}})
+        if (!axes_[k].periodic && std::all_of(nodes.begin(), nodes.end(), [&](const Node& node) { return node[k] == side; })) return true;
+    return false;
+  }
 
-/// The facets of a grid, oriented outwards, made without its cells; `number` of a node.
-template <int D, class Number>
-[[nodiscard]] std::vector<typename PointCloud<D>::Facet> grid_sides(const GridAxes<D>& axes, const Number& number) {
+ private:
+  const GridAxes& axes_;
+};
+
+/// The facets of a whole grid, oriented outwards, made without its cells.
+template <int D>
+[[nodiscard]] std::vector<typename PointCloud<D>::Facet> grid_sides(const GridAxes& axes) {
+  const GridNumbers<D> whole(axes);
   std::vector<typename PointCloud<D>::Facet> facets;
   for (std::size_t k = 0; k < axes.size(); ++k) {
     if (axes[k].periodic) continue;
     for (const bool upper : {false, true}) {
       // A layer of cells on the side has it as one of its sides.
-      GridAxes<D> layer = axes;
+      GridAxes layer = axes;
       const std::size_t n = axes[k].nodes.size();
       layer[k].nodes = {axes[k].nodes[upper ? n - 2 : 0], axes[k].nodes[upper ? n - 1 : 1]};
-      const PointCloud<D> cells = grid<D>(layer, "");
-      const auto node = [&](Index i) {
-        std::array<std::size_t, static_cast<std::size_t>(D)> of_whole{};
-        for (std::size_t l = 0; l < layer.size(); ++l) {
-          of_whole[l] = layer[l].nodes[i % layer[l].nodes.size()];
-          i = static_cast<Index>(i / layer[l].nodes.size());
-        }
-        return of_whole;
-      };
-      for (auto facet : cells.facets) {
-        const std::size_t side = axes[k].nodes[upper ? n - 1 : 0];
-        if (!std::all_of(facet.begin(), facet.end(), [&](Index i) { return node(i)[k] == side; })) continue;
-        for (Index& i : facet) i = number(node(i));
+      const GridNumbers<D> of_layer(layer);
+      const std::size_t side = axes[k].nodes[upper ? n - 1 : 0];
+      for (auto facet : grid<D>(layer, "").facets) {
+        if (!std::all_of(facet.begin(), facet.end(), [&](Index i) { return of_layer.node(i)[k] == side; })) continue;
+        for (Index& i : facet) i = whole.number(of_layer.node(i));
         facets.push_back(facet);
       }
     }
@@ -149,11 +175,11 @@ template <int D, class Number>
 template <int D>
 class GridDivision {
  public:
-  using Node = std::array<std::size_t, static_cast<std::size_t>(D)>;
+  using Node = typename GridNumbers<D>::Node;
   struct Brick {
     Node first{}, last{};  // [first, last)
   };
-  GridDivision(const GridAxes<D>& axes, int ranks) : axes_(axes), ranks_(ranks) {
+  GridDivision(const GridAxes& axes, int ranks) : axes_(axes), ranks_(ranks) {
     for (int rank = 0; rank < ranks; ++rank) (void)brick(rank);
   }
   /// The nodes of a rank. Throws ParameterError where there are none.
@@ -197,131 +223,113 @@ class GridDivision {
     return {brick, first};
   }
 
-  const GridAxes<D>& axes_;
+  const GridAxes& axes_;
   int ranks_;
 };
+
+/// One direction of the piece of a grid that a part needs: own nodes, `reach` around them (m), and one more for the cells. `complete` becomes 1 for nodes that have the cells on both sides.
+[[nodiscard]] inline GridAxis piece_of(const GridAxis& whole, std::size_t own_first, std::size_t own_last, double reach, std::vector<char>& complete) {
+  GridAxis piece = whole;
+  const auto beyond = static_cast<std::int64_t>(std::ceil(reach / whole.edge())) + 1, n = static_cast<std::int64_t>(whole.nodes.size());
+  std::int64_t first = static_cast<std::int64_t>(own_first) - beyond, last = static_cast<std::int64_t>(own_last) + beyond;
+  if (!whole.periodic) first = std::max<std::int64_t>(first, 0), last = std::min(last, n);
+  if (!whole.periodic || last - first < n) {
+    piece.nodes.clear();
+    for (std::int64_t i = first; i < last; ++i) piece.nodes.push_back(static_cast<Index>((i + n) % n));
+    piece.closed = false;
+  }
+  complete.assign(piece.nodes.size(), 1);
+  if (piece.closed) return piece;
+  if (whole.periodic || piece.nodes.front() != 0) complete.front() = 0;
+  if (whole.periodic || piece.nodes.back() != whole.nodes.back()) complete.back() = 0;
+  return piece;
+}
 
 template <int D>
 PointCloud<D> brick_part(const Point<D>& size, const std::array<int, static_cast<std::size_t>(D)>& cells, const std::array<bool, static_cast<std::size_t>(D)>& periodic,
                          const Point<D>& origin, const std::string& region, const Part& part) {
   part.validate();
-  using Division = GridDivision<D>;
-  using Node = typename Division::Node;
-  const GridAxes<D> whole = grid_axes<D>(size, cells, periodic, origin);
-  const Division division(whole, part.ranks);
+  using Node = typename GridNumbers<D>::Node;
+  const GridAxes axes = grid_axes<D>(size, cells, periodic, origin);
+  const GridNumbers<D> whole(axes);
+  if (whole.count() > static_cast<double>(std::numeric_limits<Index>::max()))
+    throw ParameterError(fmt::format("The grid has {:g} particles; {} are the most that can be numbered.", whole.count(), std::numeric_limits<Index>::max()));
+  const GridDivision<D> division(axes, part.ranks);
   const auto own = division.brick(part.rank);
+  double spacing = 0.0;
+  for (const GridAxis& axis : axes) spacing = std::max(spacing, axis.edge());
+  GridAxes piece_axes;
+  std::vector<std::vector<char>> complete(axes.size());  // per direction and node
+  for (std::size_t k = 0; k < axes.size(); ++k) piece_axes.push_back(piece_of(axes[k], own.first[k], own.last[k], 2.0 * part.support * spacing * (1.0 + 1e-9), complete[k]));
+  PointCloud<D> piece = grid<D>(piece_axes, region);
 
-  // The piece that is here: own nodes, two supports around them, and one more for the cells.
-  double spacing = 0.0, count = 1.0;
-  for (const GridAxis& axis : whole) spacing = std::max(spacing, axis.edge()), count *= static_cast<double>(axis.nodes.size());
-  if (count > static_cast<double>(std::numeric_limits<Index>::max())) throw ParameterError(fmt::format("The grid has {:g} particles; {} are the most that can be numbered.", count, std::numeric_limits<Index>::max()));
-  GridAxes<D> here = whole;
-  std::vector<std::vector<char>> complete(here.size());  // per direction and node: it has the cells on both sides
-  for (std::size_t k = 0; k < here.size(); ++k) {
-    const auto beyond = static_cast<std::int64_t>(std::ceil(2.0 * part.support * spacing * (1.0 + 1e-9) / whole[k].edge())) + 1;
-    const auto n = static_cast<std::int64_t>(whole[k].nodes.size());
-    std::int64_t first = static_cast<std::int64_t>(own.first[k]) - beyond, last = static_cast<std::int64_t>(own.last[k]) + beyond;
-    GridAxis& axis = here[k];
-    if (axis.periodic ? last - first < n : true) {
-      if (!axis.periodic) first = std::max<std::int64_t>(first, 0), last = std::min(last, n);
-      axis.nodes.clear();
-      for (std::int64_t i = first; i < last; ++i) axis.nodes.push_back(static_cast<Index>((i + n) % n));
-      axis.closed = false;
-    }
-    complete[k].assign(axis.nodes.size(), 1);
-    if (axis.closed) continue;
-    const auto cut = [&](Index i, Index side) { return axis.periodic || i != side; };
-    if (cut(axis.nodes.front(), 0)) complete[k].front() = 0;
-    if (cut(axis.nodes.back(), whole[k].nodes.back())) complete[k].back() = 0;
-  }
-  PointCloud<D> piece = grid<D>(here, region);
-
-  CloudPart made(part, static_cast<std::size_t>(count));
-  const auto number = [&](const Node& node) {
-    std::size_t n = 0;
-    for (std::size_t k = whole.size(); k-- > 0;) n = n * whole[k].nodes.size() + node[k];
-    return static_cast<Index>(n);
+  // From now on in numbers of the whole, in groups: on its surface, own, complete, beyond.
+  struct Particle {
+    Index number, place;
+    bool complete;
+    bool operator<(const Particle& other) const { return number < other.number; }
   };
-  const auto node = [&](Index n) {
-    Node of_whole;
-    for (std::size_t k = 0; k < whole.size(); ++k) {
-      of_whole[k] = n % whole[k].nodes.size();
-      n = static_cast<Index>(n / whole[k].nodes.size());
-    }
-    return of_whole;
-  };
-  const auto is_on_side = [&](const Node& of_whole) {
-    for (std::size_t k = 0; k < whole.size(); ++k)
-      if (!whole[k].periodic && (of_whole[k] == 0 || of_whole[k] == whole[k].nodes.back())) return true;
-    return false;
-  };
-
-  // The piece in numbers of the whole.
+  const GridNumbers<D> of_piece(piece_axes);
   std::vector<Index> in_whole(piece.size());
-  std::vector<char> is_complete(piece.size(), 1);
-  std::array<std::vector<Index>, 4> groups;  // of numbers in the whole: on the surface of the whole, own, complete, beyond
+  std::vector<Particle> particles;
+  std::array<std::vector<Index>, 4> groups;
   for (Index i = 0; i < piece.size(); ++i) {
-    Node of_whole;
-    std::size_t rest = i;
-    bool is_own = true;
-    for (std::size_t k = 0; k < here.size(); ++k) {
-      const std::size_t along = rest % here[k].nodes.size();
-      rest /= here[k].nodes.size();
-      of_whole[k] = here[k].nodes[along];
-      is_own = is_own && of_whole[k] >= own.first[k] && of_whole[k] < own.last[k];
-      if (!complete[k][along]) is_complete[i] = 0;
+    const Node node = of_piece.node(i);
+    bool is_own = true, is_complete = true;
+    for (std::size_t k = 0, rest = i; k < axes.size(); rest /= piece_axes[k].nodes.size(), ++k) {
+      is_own = is_own && node[k] >= own.first[k] && node[k] < own.last[k];
+      is_complete = is_complete && complete[k][rest % piece_axes[k].nodes.size()];
     }
-    in_whole[i] = number(of_whole);
-    if (!part.surface || !is_on_side(of_whole)) groups[is_own ? 1 : is_complete[i] ? 2 : 3].push_back(in_whole[i]);
+    in_whole[i] = whole.number(node);
+    particles.push_back({in_whole[i], 0, is_complete});
+    if (!part.surface || !whole.on_one_side(std::array<Node, 1>{node})) groups[is_own ? 1 : is_complete ? 2 : 3].push_back(in_whole[i]);
   }
-  std::vector<typename PointCloud<D>::Facet> facets = part.surface ? grid_sides<D>(whole, number) : piece.facets;
+  const auto into_whole = [&](auto& list) {
+    for (auto& entity : list)
+      for (Index& i : entity) i = in_whole[i];
+  };
+  into_whole(piece.cells);
+  into_whole(piece.facets);
   if (part.surface) {
-    for (const auto& facet : facets) groups[0].insert(groups[0].end(), facet.begin(), facet.end());
+    piece.facets = grid_sides<D>(axes);
+    for (const auto& facet : piece.facets) groups[0].insert(groups[0].end(), facet.begin(), facet.end());
     std::sort(groups[0].begin(), groups[0].end());
     groups[0].erase(std::unique(groups[0].begin(), groups[0].end()), groups[0].end());
+    const std::size_t here = particles.size();
+    std::sort(particles.begin(), particles.end());
+    for (const Index n : groups[0])
+      if (!std::binary_search(particles.begin(), particles.begin() + static_cast<std::ptrdiff_t>(here), Particle{n, 0, false})) particles.push_back({n, 0, false});
   } else {  // the sides on which the piece is cut are no facets
-    for (auto& facet : facets)
-      for (Index& i : facet) i = in_whole[i];
-    std::erase_if(facets, [&](const auto& facet) { return !is_on_one_side<D>(whole, facet, node); });
+    std::erase_if(piece.facets, [&](const auto& facet) {
+      std::array<Node, std::tuple_size_v<typename PointCloud<D>::Facet>> nodes;
+      std::transform(facet.begin(), facet.end(), nodes.begin(), [&](Index i) { return whole.node(i); });
+      return !whole.on_one_side(nodes);
+    });
   }
+  std::sort(particles.begin(), particles.end());
+  const auto particle = [&](Index number) -> Particle& { return *std::lower_bound(particles.begin(), particles.end(), Particle{number, 0, false}); };
 
-  // Particles group by group, each along a curve.
-  PointCloud<D> result;
-  result.regions = piece.regions;
-  result.period = piece.period;
-  std::vector<std::pair<Index, Index>> places;  // number in the whole, place in the result
-  std::vector<std::pair<Index, char>> completes;
-  for (Index i = 0; i < piece.size(); ++i) completes.emplace_back(in_whole[i], is_complete[i]);
-  std::sort(completes.begin(), completes.end());
+  // Each group along a curve.
+  CloudPart made(part, static_cast<std::size_t>(whole.count()));
+  piece.positions.clear();
   for (const std::vector<Index>& group : groups) {
-    std::vector<Point<D>> positions;
-    for (const Index n : group) {
-      const Node of_whole = node(n);
-      Point<D> x;
-      for (std::size_t k = 0; k < whole.size(); ++k) x[static_cast<int>(k)] = whole[k].place(of_whole[k]);
-      positions.push_back(x);
-    }
-    for (const Index k : morton_order<D>(positions)) {
-      const Index n = group[k];
-      const auto at = std::lower_bound(completes.begin(), completes.end(), std::pair(n, char{0}));
-      places.emplace_back(n, static_cast<Index>(result.positions.size()));
-      result.positions.push_back(positions[k]);
-      made.add(n, division.owner(node(n)), spacing, at != completes.end() && at->first == n && at->second != 0);
+    std::vector<Point<D>> places;
+    for (const Index n : group) places.push_back(whole.place(whole.node(n)));
+    for (const Index k : morton_order<D>(places)) {
+      Particle& p = particle(group[k]);
+      p.place = static_cast<Index>(piece.positions.size());
+      piece.positions.push_back(places[k]);
+      made.add(p.number, division.owner(whole.node(p.number)), spacing, p.complete);
     }
   }
-  std::sort(places.begin(), places.end());
-  const auto renumbered = [&](auto entity) {
-    for (Index& i : entity) i = std::lower_bound(places.begin(), places.end(), std::pair(i, Index{0}))->second;
-    return entity;
+  const auto renumber = [&](auto& list) {
+    for (auto& entity : list)
+      for (Index& i : entity) i = particle(i).place;
   };
-  for (auto cell : piece.cells) {
-    for (Index& i : cell) i = in_whole[i];
-    result.cells.push_back(renumbered(cell));
-  }
-  result.cell_regions = std::move(piece.cell_regions);
-  for (const auto& facet : facets) result.facets.push_back(renumbered(facet));
-  result.part = std::make_shared<const CloudPart>(std::move(made));
-  return result;
+  renumber(piece.cells);
+  renumber(piece.facets);
+  piece.part = std::make_shared<const CloudPart>(std::move(made));
+  return piece;
 }
 
 }  // namespace tactoid::detail
