@@ -92,12 +92,15 @@ class PartOfBody final : public BodyShare {
     lists = exchange_lists(ranks_, lists);
     std::vector<Index> by_number = part->own;
     std::sort(by_number.begin(), by_number.end(), [&](Index a, Index b) { return part->number[a] < part->number[b]; });
+    double strange = 0.0;  // particles that belong to another rank
     for (auto& list : lists)
       for (Index& i : list) {
         const auto at = std::lower_bound(by_number.begin(), by_number.end(), i, [&](Index a, Index number) { return part->number[a] < number; });
-        if (at == by_number.end() || part->number[*at] != i) throw ComputationError("Particle " + std::to_string(i) + " is said to belong to rank " + std::to_string(rank_) + ", and does not: the parts of the cloud are not of one division.");
-        i = *at;
+        if (at == by_number.end() || part->number[*at] != i) ++strange;
+        else i = *at;
       }
+    mpi::reduce(ranks_, {&strange, 1}, {});
+    if (strange > 0.0) throw ParameterError(fmt::format("The parts of the cloud are not of one division: {:.0f} particles are said to belong to ranks that have them not.", strange));
     return lists;
   }
 
