@@ -123,12 +123,7 @@ class PartOfBody final : public BodyShare {
     ghosts_.reset();
   }
   void exchange(Field& field) override {
-    if (!ghosts_) {
-      std::vector<std::vector<Index>> asked = lists();
-      for (const Index i : here)
-        if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
-      ghosts_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, named_by_others(asked)), parcels_of(1, asked));
-    }
+    if (!ghosts_) ghosts_ = from_owners(here);
     send(*ghosts_, field);
   }
   void complete(std::span<double> values) override {
@@ -140,10 +135,9 @@ class PartOfBody final : public BodyShare {
   }
   void tell_all(Field& field) override {
     if (!copies_) {
-      std::vector<std::vector<Index>> asked = lists();
-      for (Index i = 0; i < particle_owner.size(); ++i)
-        if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
-      copies_ = std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, named_by_others(asked)), parcels_of(1, asked));
+      std::vector<Index> all(particle_owner.size());
+      std::iota(all.begin(), all.end(), Index{0});
+      copies_ = from_owners(all);
     }
     send(*copies_, field);
   }
@@ -216,6 +210,13 @@ class PartOfBody final : public BodyShare {
     std::vector<Parcel> parcels;
     for (const auto& list : lists) parcels.push_back({{Piece{std::vector<Field*>(fields, nullptr), list}}});
     return parcels;
+  }
+  /// One field of those particles that belong to other ranks, from these. Collective.
+  [[nodiscard]] std::unique_ptr<ParcelsToNeighbors> from_owners(const std::vector<Index>& particles) const {
+    std::vector<std::vector<Index>> asked = lists();
+    for (const Index i : particles)
+      if (particle_owner[i] != rank_) asked[static_cast<std::size_t>(particle_owner[i])].push_back(i);
+    return std::make_unique<ParcelsToNeighbors>(ranks_, parcels_of(1, named_by_others(asked)), parcels_of(1, asked));
   }
   static void send(ParcelsToNeighbors& parcels, Field& field) {
     parcels.carry(std::array{&field});

@@ -69,6 +69,12 @@ class ByteHash {
     for (const char c : bytes) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
     count_ += bytes.size();
   }
+  /// What is left of a file; false where it cannot be read.
+  [[nodiscard]] bool add_rest(std::FILE* file) {
+    std::string bytes(std::size_t{1} << 20, '\0');
+    for (std::size_t n = 0; (n = std::fread(bytes.data(), 1, bytes.size(), file)) > 0;) add(std::string_view(bytes).substr(0, n));
+    return std::ferror(file) == 0;
+  }
   [[nodiscard]] std::uint64_t value() const { return hash_; }
   [[nodiscard]] std::size_t count() const { return count_; }
 
@@ -121,14 +127,20 @@ inline void write_set(hid_t file, const std::string& name, const StateArray& arr
   if (!array.values.empty()) hdf5_succeeded(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
 }
 
+/// The places of the rows that are here, by their numbers in the whole.
+[[nodiscard]] inline std::vector<std::size_t> places_in_order(const StateArray& array) {
+  std::vector<std::size_t> order(array.rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return array.rows[a] < array.rows[b]; });
+  return order;
+}
+
 /// A data set of which several processes have rows each: they come to the first one piece by piece; what nobody has is 0. `set` is used there alone; where it cannot be written to,
 /// all go on, and the first one's `failure` says so. Collective.
 inline void write_rows(const hid_t* set, const StateArray& array, std::string& failure) {
   Ranks* const ranks = Ranks::current;
   const std::size_t width = array.shape.size() > 1 ? array.shape[1] : 1;
-  std::vector<std::size_t> order(array.rows.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return array.rows[a] < array.rows[b]; });
+  const std::vector<std::size_t> order = places_in_order(array);
   std::vector<double> list, piece;
   auto next = order.begin();
   for (std::size_t first = 0; first < array.length; first += rows_at_a_time) {
@@ -191,11 +203,8 @@ inline void write_checkpoint_in_rows(const std::filesystem::path& path, const Ch
   }
   attempt([&] {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(out->temporary().c_str(), "rb"), std::fclose);
-    if (file == nullptr || std::fseek(file.get(), checkpoint_head_size, SEEK_SET) != 0) fail_file("write", path, errno);
     ByteHash hash;
-    std::string bytes(std::size_t{1} << 20, '\0');
-    for (std::size_t n = 0; (n = std::fread(bytes.data(), 1, bytes.size(), file.get())) > 0;) hash.add(std::string_view(bytes).substr(0, n));
-    if (std::ferror(file.get())) fail_file("write", path, errno);
+    if (file == nullptr || std::fseek(file.get(), checkpoint_head_size, SEEK_SET) != 0 || !hash.add_rest(file.get())) fail_file("write", path, errno);
     out->write(checkpoint_head(hash));  // at the beginning, which HDF5 has left free
     out->commit(true);
   });
@@ -259,9 +268,7 @@ namespace detail {
   array.length = wanted->length;
   array.shape[0] = array.rows.size();
   array.values.resize(array.rows.size() * width);
-  std::vector<std::size_t> order(array.rows.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return array.rows[a] < array.rows[b]; });
+  const std::vector<std::size_t> order = places_in_order(array);
   std::vector<double> piece;
   for (auto next = order.begin(); next != order.end();) {
     const std::size_t first = array.rows[*next], count = std::min(rows_at_a_time, array.rows[order.back()] + 1 - first);
@@ -351,12 +358,11 @@ namespace detail {
     if (!is_first_rank()) return;
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (file == nullptr) detail::fail_file("read", path, errno);
-    std::string head(detail::checkpoint_head_size, '\0'), bytes(std::size_t{1} << 20, '\0');
+    std::string head(detail::checkpoint_head_size, '\0');
     head.resize(std::fread(head.data(), 1, head.size(), file.get()));
     std::string failure = detail::why_no_checkpoint(head);
     detail::ByteHash hash;
-    for (std::size_t n = 0; failure.empty() && (n = std::fread(bytes.data(), 1, bytes.size(), file.get())) > 0;) hash.add(std::string_view(bytes).substr(0, n));
-    if (std::ferror(file.get())) detail::fail_file("read", path, errno);
+    if (std::ferror(file.get()) != 0 || (failure.empty() && !hash.add_rest(file.get()))) detail::fail_file("read", path, errno);
     if (failure.empty() && head != detail::checkpoint_head(hash)) failure = "is a damaged checkpoint: it is cut off, or some of its bytes have changed";
     if (!failure.empty()) throw FileError(fmt::format("{} {}.", in_quotes(path.string()), failure));
   });

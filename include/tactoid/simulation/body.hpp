@@ -362,7 +362,7 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
   // --- shared by several processes ---------------------------------------------------------------------------
   /// How the rows of the table are divided among the processes that have made it together; null where this one has all of them.
   [[nodiscard]] BodyShare* share() const { return share_.get(); }
-  /// Whether this process has a part of the cloud only (cloud_part.hpp): particles and points are numbered in it, and nobody has the whole.
+  /// Whether this process has a part of the cloud only (CloudPart): particles and points are numbered in it, and nobody has the whole.
   [[nodiscard]] bool in_parts() const { return share_ && share_->part; }
   /// Leaves to other processes what is not in this share of the body. Everything must be evaluated before.
   void share_with(std::shared_ptr<BodyShare> share) {
