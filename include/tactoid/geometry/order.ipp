@@ -61,10 +61,13 @@ PointCloud<D> morton_ordered(const PointCloud<D>& cloud) {
     }
     return middle;
   };
+  ordered.cells.reserve(cloud.cells.size());
+  ordered.cell_regions.reserve(cloud.cells.size());
   for (const Index c : morton_order<D>(centers(cloud.cells))) {
     ordered.cells.push_back(renumbered(cloud.cells[c]));
     ordered.cell_regions.push_back(cloud.cell_regions[c]);
   }
+  ordered.facets.reserve(cloud.facets.size());
   for (const Index f : morton_order<D>(centers(cloud.facets)))
     ordered.facets.push_back(renumbered(cloud.facets[f]));
   return ordered;

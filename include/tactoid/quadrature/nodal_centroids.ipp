@@ -57,6 +57,10 @@ PointTable NodalCentroids::table_of(const PointCloud<D>& cloud, double support, 
   for (double& radius : supports) radius *= support;
 
   PointTable table = empty_table(cloud);
+  table.volume.reserve(cells.size());
+  table.region.reserve(cells.size());
+  table.owner.reserve(cells.size());
+  table.position.reserve(cells.size());
   for (const NodalCell<D>& cell : cells) {
     table.volume.push_back(cell.volume);
     table.region.push_back(cell.region);

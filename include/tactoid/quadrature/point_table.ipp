@@ -40,10 +40,9 @@ TACTOID_INLINE void PointTable::use_single_precision() {
 }
 
 TACTOID_INLINE std::size_t PointTable::memory() const {
-  return entries.capacity() * sizeof(TableEntry) + single_entries.capacity() * sizeof(SingleTableEntry) + (point_values.capacity() + mass_shares.capacity()) * sizeof(double) +
-         points() * (sizeof(Vector3) + 2 * sizeof(double) + 2 * sizeof(Index) + sizeof(std::size_t)) +
-         bond_offsets.capacity() * sizeof(std::size_t) + bond_weights.capacity() * sizeof(float) +
-         stabilization_scale.capacity() * sizeof(double) + particle_position.capacity() * sizeof(Vector4) + particle_values.values.capacity() * 12;
+  const auto bytes = [](const auto&... list) { return ((list.capacity() * sizeof(list[0])) + ...); };
+  return bytes(position, volume, region, owner, offsets, entries, single_entries, point_values, particle_values.offsets, particle_values.particles,
+               particle_values.values, mass_shares, particle_position, stabilization_scale, bond_offsets, bond_weights, chunks, color_offsets);
 }
 
 }  // namespace tactoid

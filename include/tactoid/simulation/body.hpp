@@ -442,14 +442,15 @@ class Body<KernelType, QuadratureType, Materials<Ms...>, Director> {
     return rows;
   }
 
-  /// Bytes of the tables and fields of the body.
+  /// Bytes of the tables and fields of the body, without its cloud (some 60 bytes per particle), and without what a simulation keeps beside it.
   [[nodiscard]] std::size_t memory() const {
-    std::size_t histories = 0;
-    for_each_region([&](const auto& region, Index) {
-      histories += 2 * region.histories.size() * sizeof(typename std::decay_t<decltype(region.histories)>::value_type);
-    });
-    const std::size_t earlier = earlier_.gradient.size() * (sizeof(Tensor3) + sizeof(double)) + (earlier_.position.size() + relative_.size()) * sizeof(Vector4);
-    return histories + earlier + table_.memory() + size() * (7 * sizeof(Vector4) + 2 * sizeof(double)) + table_.points() * sizeof(double);
+    std::size_t sum = table_.memory();
+    const auto add = [&](const auto&... list) { ((sum += list.capacity() * sizeof(list[0])), ...); };
+    for_each_region([&](const auto& region, Index) { add(region.histories, region.advanced); });
+    add(displacement, velocity, force, director, director_flux, anchored, masses_, volumes_, point_scale_, motion_, relative_);
+    add(chunks_, point_rate_, point_volume_ratio_, points_of_particle_, earlier_.gradient, earlier_.volume, earlier_.position);
+    for (const auto& points : points_of_particle_) add(points);
+    return sum;
   }
 
  private:
