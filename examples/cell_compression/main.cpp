@@ -361,8 +361,8 @@ void run_static(const Run& run, Body body) {
         energies.stabilization = problem.energies().stabilization_energy;
       }
       fields.refresh(body, 0.0);
-      recorder.record(body, fields.view(), 0.0, depth, force, layer, energies);
-      if (k * run.frames / p.samples != (k - 1) * run.frames / p.samples || k == 0) recorder.write_frame(body, fields.view(), fraction(k));
+      recorder.record(body, fields.view(body), 0.0, depth, force, layer, energies);
+      if (k * run.frames / p.samples != (k - 1) * run.frames / p.samples || k == 0) recorder.write_frame(body, fields.view(body), fraction(k));
       progress.update(fraction(k), static_cast<std::uint64_t>(steps.iterations));
       ++steps.done;
       keeper.check();

@@ -34,7 +34,7 @@ const double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Push of a rigid sphere on the plate in the gap D below it, N.
 [[nodiscard]] double rigid_sphere_force(const PointCloud<3>& cloud, double top, double gap,
                                         const LigandReceptorLaw& law) {
-  BodyFields fields = at_rest(cloud);
+  FieldsAtRest fields(cloud);
   OnRigid<LigandReceptorLaw, RigidPlane> plate{
       .law = law, .surface = {.point = Vector3(0.0, 0.0, top + gap), .normal = -Vector3::UnitZ()}};
   plate.initialize(cloud, fields.view());

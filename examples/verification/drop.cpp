@@ -257,7 +257,7 @@ template <class Tension>
   const Drop drop;
   const PointCloud<3> cloud =
       ball({.radius = drop.radius, .core_radius = 0.5 * drop.radius, .core_cells = core_cells, .shells = shells});
-  BodyFields fields = at_rest(cloud);
+  FieldsAtRest fields(cloud);
   for (Vector4& x : fields.position) {
     const Vector4 s = x / drop.radius;
     x += drop.radius * Vector4(0.15 * std::sin(2.0 * s[1] + 0.3) + 0.1 * s[0] * s[2], 0.2 * s[0] * s[0] - 0.1 * s[2],

@@ -1,20 +1,23 @@
 #pragma once
 
+#include <vector>
+
+#include <tactoid/geometry/particle_fields.hpp>
 #include <tactoid/geometry/point_cloud.hpp>
-#include <tactoid/simulation/body_fields.hpp>
 
 namespace tactoid::verification {
 
-/// Values at the particles of a cloud that does not deform, of unit masses.
-[[nodiscard]] inline BodyFields at_rest(const PointCloud<3>& cloud) {
-  BodyFields fields;
-  for (const Point<3>& X : cloud.positions) fields.reference.push_back(pad(X));
-  fields.position = fields.reference;
-  fields.velocity.assign(cloud.size(), Vector4::Zero());
-  fields.force.assign(cloud.size(), Vector4::Zero());
-  fields.mass.assign(cloud.size(), 1.0);
-  fields.volume.assign(cloud.size(), 1.0);
-  return fields;
-}
+/// Values at the particles of a cloud that is no body: of unit masses, at rest where they are put.
+struct FieldsAtRest {
+  Field reference, position, velocity, force;
+  std::vector<double> ones;
+
+  explicit FieldsAtRest(const PointCloud<3>& cloud) : velocity(cloud.size(), Vector4::Zero()), force(velocity), ones(cloud.size(), 1.0) {
+    for (const Point<3>& X : cloud.positions) reference.push_back(pad(X));
+    position = reference;
+  }
+  /// As contacts and terms take it; valid as long as this object.
+  [[nodiscard]] ParticleFields view() { return {reference, position, velocity, ones, ones, force}; }
+};
 
 }  // namespace tactoid::verification

@@ -66,10 +66,10 @@ class PressedBody {
     fields_.prepare(body);
     contact_ = {.law = law, .surface = {.normal = -Vector3::UnitZ()}, .points_per_direction = 3};
     surface_ = FacetSurface<3>(part_);
-    quadrature_ = FacetQuadrature<3>(surface_, fields_.reference, 3);
-    contact_.initialize(part_, fields_.view());
+    quadrature_ = FacetQuadrature<3>(surface_, body.reference(), 3);
+    contact_.initialize(part_, fields_.view(body));
     for (std::size_t i = 0; i < body.size(); ++i)
-      for (int k = 0; k < 3; ++k) unknown_.push_back(fields_.reference[i][k] == 0.0 ? -1 : unknowns_++);
+      for (int k = 0; k < 3; ++k) unknown_.push_back(body.reference()[i][k] == 0.0 ? -1 : unknowns_++);
     column_.assign(body.size(), -1);
     for (const Index i : surface_.nodes)
       if ((part_.positions[i] - Point<3>(0.0, 0.0, radius)).norm() < reach && unknown_[3 * i + 2] >= 0) {
@@ -142,7 +142,7 @@ class PressedBody {
 
   Eigen::VectorXd forces(double& scale) {
     fields_.refresh(body_, 0.0);
-    energy_ = contact_.apply(fields_.view(), 0.0).potential;
+    energy_ = contact_.apply(fields_.view(body_), 0.0).potential;
     body_.force = fields_.force;
     body_.add_internal_forces(0.0, false);
     Eigen::VectorXd sum(unknowns_);

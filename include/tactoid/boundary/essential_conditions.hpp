@@ -78,6 +78,7 @@ class EssentialConditions {
   struct Condition {
     Index particle;      ///< number of the particle
     std::size_t motion;  ///< number of the motion that it follows
+    Vector3 place;       ///< X of the particle in the first configuration, m
   };
   /// The prescribed particles of a component.
   [[nodiscard]] const std::vector<Condition>& conditions(int component) const {
@@ -111,7 +112,7 @@ class EssentialConditions {
     }
   }
   [[nodiscard]] Vector3 prescribed(const Condition& condition, double time) const {
-    return motions_[condition.motion].value((*reference_)[condition.particle].head<3>(), time);
+    return motions_[condition.motion].value(condition.place, time);
   }
 
   void factorize(Direction& direction, const ParticleValues& values) const;
@@ -119,7 +120,6 @@ class EssentialConditions {
   [[nodiscard]] StateRows condition_rows(int c, const CloudPart& part, RowShare* share) const;
 
   std::vector<PrescribedMotion> motions_;
-  const Field* reference_ = nullptr;
   const std::vector<double>* masses_ = nullptr;
   bool identity_ = true;
   std::array<Direction, 3> directions_;

@@ -16,7 +16,7 @@ struct EssentialConditions::Solver : Eigen::SimplicialLDLT<Eigen::SparseMatrix<d
 TACTOID_INLINE EssentialConditions::EssentialConditions(std::vector<PrescribedMotion> motions,
                                                         const ParticleValues& values, const Field& reference,
                                                         const std::vector<double>& masses)
-    : motions_(std::move(motions)), reference_(&reference), masses_(&masses), identity_(values.identity()) {
+    : motions_(std::move(motions)), masses_(&masses), identity_(values.identity()) {
   for (int c = 0; c < 3; ++c) {
     auto& direction = directions_[static_cast<std::size_t>(c)];
     std::vector<char> taken(reference.size(), 0);
@@ -28,7 +28,7 @@ TACTOID_INLINE EssentialConditions::EssentialConditions(std::vector<PrescribedMo
                                            reference.size()));
         if (taken[particle]++)
           throw ParameterError(fmt::format("PrescribedMotion: component {} of particle {} is prescribed twice.", c, particle));
-        direction.conditions.push_back({particle, m});
+        direction.conditions.push_back({particle, m, reference[particle].head<3>()});
       }
     }
     direction.last.resize(direction.conditions.size());
@@ -51,9 +51,10 @@ TACTOID_INLINE double EssentialConditions::impose(double time, double time_step,
     Eigen::VectorXd defect(static_cast<Eigen::Index>(n));
     Eigen::VectorXd target(static_cast<Eigen::Index>(n));
     for (std::size_t k = 0; k < n; ++k) {
-      const auto& [particle, motion] = direction.conditions[k];
+      const Condition& condition = direction.conditions[k];
+      const Index particle = condition.particle;
       const auto row = static_cast<Eigen::Index>(k);
-      target[row] = motions_[motion].value((*reference_)[particle].head<3>(), time)[c];
+      target[row] = prescribed(condition, time)[c];
       defect[row] = target[row] - (identity_ ? displacement[particle][c] : direction.interpolate(k, displacement, c));
     }
     Eigen::VectorXd multiplier(defect.size());
@@ -86,7 +87,7 @@ TACTOID_INLINE double EssentialConditions::impose(double time, double time_step,
     }
     for (std::size_t k = 0; k < n; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
-      const auto& [particle, motion] = direction.conditions[k];
+      const auto& [particle, motion, place] = direction.conditions[k];
       auto& last = direction.last[k];
       if (time_step > 0.0) {
         // The impulse acts from the middle of the last step to that of this one; the rest of this step, which the
@@ -113,7 +114,7 @@ TACTOID_INLINE double EssentialConditions::impose(double time, double time_step,
 
 TACTOID_INLINE StateRows EssentialConditions::condition_rows(int c, const CloudPart& part, RowShare* share) const {
   std::vector<double> keys;
-  for (const auto& [particle, motion] : conditions(c)) keys.push_back(static_cast<double>(motion * part.whole + part.number[particle]));
+  for (const auto& [particle, motion, place] : conditions(c)) keys.push_back(static_cast<double>(motion * part.whole + part.number[particle]));
   std::vector<double> all = share != nullptr ? share->join(keys) : keys;
   std::sort(all.begin(), all.end());
   StateRows rows{.size = keys.size(), .length = all.size(), .here = {}, .number = {}};

@@ -8,35 +8,24 @@ namespace tactoid {
 
 /// The values of a body at its particles, which contacts, boundary terms and observers see.
 struct BodyFields {
-  Field reference;  ///< X, m
-  Field position;   ///< x, m
-  Field velocity;   ///< v at the present instant, m/s
-  Field force;      ///< of contacts and boundary terms, N
-  std::vector<double> mass;    ///< lumped, kg
-  std::vector<double> volume;  ///< reference nodal volume, m³
-  Ranks* ranks = nullptr;      ///< that share the body
+  Field position;          ///< x, m
+  Field velocity;          ///< v at the present instant, m/s
+  Field force;             ///< of contacts and boundary terms, N
+  Ranks* ranks = nullptr;  ///< that share the body
 
   /// The reference configuration of a body, at rest.
   template <class Body>
   void prepare(const Body& body) {
-    reference = body.reference();
-    position = reference;
+    position = body.reference();
     velocity.assign(body.size(), Vector4::Zero());
     force.assign(body.size(), Vector4::Zero());
-    follow_masses(body);
-  }
-
-  /// Takes masses and volumes of the body anew: those of particles that were redistributed change.
-  template <class Body>
-  void follow_masses(const Body& body) {
-    mass = body.masses();
-    volume = body.nodal_volumes();
   }
 
   /// Positions at the present state, velocities extrapolated by `lag` (s), how far they are behind it, with the forces
   /// of the step before; forces are cleared.
   template <class Body>
   void refresh(const Body& body, double lag) {
+    const Field& reference = body.reference();
     if (body.particle_values().identity()) {
       body.for_each_particle([&](std::size_t i) {
         position[i] = reference[i] + body.displacement[i];
@@ -45,14 +34,26 @@ struct BodyFields {
         force[i].setZero();
       });
     } else {
-      position = body.at_particles(body.displacement);
       Field v = body.velocity;
       if (lag > 0.0)
         for (std::size_t i = 0; i < v.size(); ++i) v[i] += (lag / body.masses()[i]) * body.force[i];
-      velocity = body.at_particles(v);
-      for (std::size_t i = 0; i < position.size(); ++i) position[i] += reference[i];
-      std::fill(force.begin(), force.end(), Vector4::Zero());
+      show(body, std::move(v));
     }
+  }
+
+  /// All positions at the present state, with these velocities of the unknowns (m/s); forces are cleared.
+  template <class Body>
+  void show(const Body& body, Field unknowns) {
+    const Field& reference = body.reference();
+    if (body.particle_values().identity()) {
+      position = body.displacement;
+      velocity = std::move(unknowns);
+    } else {
+      position = body.at_particles(body.displacement);
+      velocity = body.at_particles(unknowns);
+    }
+    for (std::size_t i = 0; i < position.size(); ++i) position[i] += reference[i];
+    force.assign(position.size(), Vector4::Zero());
   }
 
   /// For checkpoints: positions, velocities and forces, of the particles in `rows`; the rest comes from the body.
@@ -63,8 +64,11 @@ struct BodyFields {
     archive("force", force, rows);
   }
 
-  /// As contacts and terms take it; valid as long as this object.
-  [[nodiscard]] ParticleFields view() { return {reference, position, velocity, mass, volume, force, ranks}; }
+  /// As contacts and terms take it; valid as long as this object and the body, and until its reference is updated.
+  template <class Body>
+  [[nodiscard]] ParticleFields view(const Body& body) {
+    return {body.reference(), position, velocity, body.masses(), body.nodal_volumes(), force, ranks};
+  }
 };
 
 }  // namespace tactoid

@@ -77,7 +77,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if (body.share() != nullptr && (Ranks::current == nullptr || Ranks::current->size() == 1))
         throw ParameterError("Body \"" + body.name() + "\": several processes have made its rows, and their session is over.");
       body.velocity_lag = velocity_lag;
-      fields_[b].prepare(body);
+      if (loaded(b)) fields_[b].prepare(body);
       if (subcycling()) pace_[b].prepare(body.size());
       std::vector<PrescribedMotion> motions;
       for_each_boundary([&](auto& on, std::size_t) {
@@ -87,28 +87,28 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       motions = with_axis_condition(body.cloud(), std::move(motions));
       if (body.in_parts())  // the others belong to other processes
         for (PrescribedMotion& motion : motions) std::erase_if(motion.particles, [&](Index i) { return i < body.size() && !body.cloud().part->is_own(i); });
-      const auto make_conditions = [&] { essential_[b] = EssentialConditions(motions, body.particle_values(), fields_[b].reference, body.masses()); };
+      const auto make_conditions = [&] { essential_[b] = EssentialConditions(motions, body.particle_values(), body.reference(), body.masses()); };
       if (body.in_parts()) Ranks::current->together(make_conditions);
       else make_conditions();
       (void)impose(body, b, 0.0, 0.0);
       if (body.in_parts())
         for (Field* field : {&body.displacement, &body.velocity, &body.director})
           if (!field->empty()) body.share()->tell_all(*field);
-      fields_[b].refresh(body, 0.0);
+      if (loaded(b)) fields_[b].refresh(body, 0.0);
     });
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
       static_assert(Pair::first < body_count && Pair::second < body_count, "A contact names a body that does not exist.");
       static_assert(Contact<decltype(between.contact), dimension>, "between<…>() takes a Contact.");
-      between.contact.initialize(std::get<Pair::first>(bodies_).cloud(), fields_[Pair::first].view(),
-                                 std::get<Pair::second>(bodies_).cloud(), fields_[Pair::second].view());
+      between.contact.initialize(std::get<Pair::first>(bodies_).cloud(), view<Pair::first>(),
+                                 std::get<Pair::second>(bodies_).cloud(), view<Pair::second>());
     });
     for_each_boundary([&](auto& on, std::size_t) {
       using Place = std::decay_t<decltype(on)>;
       static_assert(Place::body < body_count, "A boundary term names a body that does not exist.");
       if constexpr (!is_motion<decltype(on)>) {
         static_assert(BoundaryTerm<decltype(on.term), dimension>, "on<…>() takes a BoundaryTerm or a PrescribedMotion.");
-        on.term.initialize(std::get<Place::body>(bodies_).cloud(), fields_[Place::body].view());
+        on.term.initialize(std::get<Place::body>(bodies_).cloud(), view<Place::body>());
       }
     });
     for_each_body([&](auto& body, std::size_t b) { stable_[b].calibrate(body); });
@@ -149,7 +149,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   template <std::size_t N>
   [[nodiscard]] ParticleFields particles() {
     complete();
-    return fields_[N].view();
+    if (!loaded(N)) show<N>();
+    return view<N>();
   }
   /// How the bodies are divided among processes; null where this one computes everything.
   [[nodiscard]] const Decomposition* decomposition() const { return decomposition_.get(); }
@@ -258,11 +259,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       const std::string name = "body_" + std::to_string(b);
       archive.part(name, body);
-      if constexpr (Archive::restoring) fields_[b].follow_masses(body);
       const StateRows own = body.particle_rows();
       const CloudPart* const part = body.cloud().part.get();
       const StateRows* const rows = part != nullptr ? &own : nullptr;
-      archive.part(name + "/at_particles", fields_[b], rows);
+      if (loaded(b)) archive.part(name + "/at_particles", fields_[b], rows);
       archive.part(name + "/conditions", essential_[b], rows, part, static_cast<RowShare*>(body.share()));
       archive.part(name + "/stable_step", stable_[b]);
       archive(name + "/term_rate", term_rates_[b]);
@@ -477,14 +477,35 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     if (done.updates == 0) return done;
     const double before = ledger_.total();
     std::array<Field, body_count> velocities;  // at the present instant, which the forces of the table before have told
-    for (std::size_t b = 0; b < body_count; ++b) velocities[b] = fields_[b].velocity;
+    for (std::size_t b = 0; b < body_count; ++b)
+      if (loaded(b)) velocities[b] = fields_[b].velocity;
     const StepEnergies energies = forces(evaluated_, time_, 0.0);
     for_each_body([&](const auto& body, std::size_t b) { check(body, b); });
-    for (std::size_t b = 0; b < body_count; ++b) fields_[b].velocity = std::move(velocities[b]);
+    for (std::size_t b = 0; b < body_count; ++b)
+      if (loaded(b)) fields_[b].velocity = std::move(velocities[b]);
     take_stored(energies);
     done.lost_energy = before - ledger_.total();
     ledger_.reference_updates += done.lost_energy;
     return done;
+  }
+
+  /// Whether contacts or boundary terms act on body b. For the others nobody needs values at particles but particles<N>().
+  [[nodiscard]] static constexpr bool loaded([[maybe_unused]] std::size_t b) {
+    return ((C::first == b || C::second == b) || ...) || ((T::body == b && !is_motion<T>) || ...);
+  }
+  /// Makes the values at the particles of a body that is not loaded().
+  template <std::size_t N>
+  void show() {
+    const auto& body = std::get<N>(bodies_);
+    Field velocity = body.velocity;
+    for (std::size_t i = 0; i < velocity.size() && forces_known_; ++i) velocity[i] = present_velocity(body, N, i);
+    if (body.in_parts()) body.share()->tell_all(velocity);  // what holds a particle is known to its own process
+    fields_[N].show(body, std::move(velocity));
+  }
+  /// Values at the particles of body N, as contacts and terms take them.
+  template <std::size_t N>
+  [[nodiscard]] ParticleFields view() {
+    return fields_[N].view(std::get<N>(bodies_));
   }
 
   /// Particles with prescribed motion, other than that nothing leaves the axis.
@@ -500,18 +521,19 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Tells everything about the particles of a body where they are now.
   template <class Body>
   void follow_redistribution(const Body& body, std::size_t b, const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows, const SurfaceTransfer& surface) {
+    if (!loaded(b)) return;
     const Field velocity = detail::carried(rows, fields_[b].velocity);  // at the present instant
-    fields_[b].follow_masses(body);
     fields_[b].refresh(body, 0.0);
     fields_[b].velocity = velocity;
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
       if constexpr (tells_of_redistribution<std::decay_t<decltype(between.contact)>>)
-        if (Pair::first == b) between.contact.redistribute(surface, fields_[b].view(), fields_[Pair::second].view());
+        if (Pair::first == b) between.contact.redistribute(surface, view<Pair::first>(), view<Pair::second>());
     });
     for_each_boundary([&](auto& on, std::size_t) {
-      if constexpr (requires { on.term.redistribute(surface, fields_[b].view()); })
-        if (std::decay_t<decltype(on)>::body == b) on.term.redistribute(surface, fields_[b].view());
+      constexpr std::size_t of = std::decay_t<decltype(on)>::body;
+      if constexpr (requires { on.term.redistribute(surface, view<of>()); })
+        if (of == b) on.term.redistribute(surface, view<of>());
     });
   }
 
@@ -525,12 +547,15 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   /// Forces and energies at the present state; histories advanced by `time_step` wait for being accepted.
   StepEnergies forces(double contact_time, double time, double time_step) {
     StepEnergies energies;
+    forces_known_ = true;
     if (!std::exchange(incomplete_, true) && decomposition_) give_back_elsewhere();
-    for_each_body([&](auto& body, std::size_t b) { fields_[b].refresh(body, velocity_lag * time_step); });
+    for_each_body([&](auto& body, std::size_t b) {
+      if (loaded(b)) fields_[b].refresh(body, velocity_lag * time_step);
+    });
     term_rates_.fill(0.0);
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
-      const ParticleFields a = fields_[Pair::first].view(), b = fields_[Pair::second].view();
+      const ParticleFields a = view<Pair::first>(), b = view<Pair::second>();
       energies.contact += between.contact.apply(a, b, contact_time);
       const double rate = between.contact.stiffness_rate(a, b);
       term_rates_[Pair::first] += rate;
@@ -539,17 +564,17 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_boundary([&](auto& on, std::size_t) {
       if constexpr (!is_motion<decltype(on)>) {
         constexpr std::size_t b = std::decay_t<decltype(on)>::body;
-        energies.boundary += on.term.apply(fields_[b].view(), time);
-        term_rates_[b] += on.term.stiffness_rate(fields_[b].view());
+        energies.boundary += on.term.apply(view<b>(), time);
+        term_rates_[b] += on.term.stiffness_rate(view<b>());
       }
     });
     end_exchange();
     for_each_body([&](auto& body, std::size_t b) {
-      if (body.particle_values().identity()) {
+      if (loaded(b) && body.particle_values().identity()) {
         body.for_each_particle([&](std::size_t i) { body.force[i] = fields_[b].force[i]; });
       } else {
         body.for_each_particle([&](std::size_t i) { body.force[i].setZero(); });
-        body.particle_values().distribute(fields_[b].force, body.force);
+        if (loaded(b)) body.particle_values().distribute(fields_[b].force, body.force);
       }
       energies.internal += add_internal_forces(body, b, time_step);
       energies.kinetic += sum_over_particles(b, body, [&](std::size_t i) {
@@ -712,12 +737,13 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   void restore() {
     if (!drifted_) return;
     drifted_ = false;
+    forces_known_ = false;
     for_each_body([&](auto& body, std::size_t b) {
       body.displacement = previous_[b];
       if (!previous_velocity_[b].empty()) body.velocity = previous_velocity_[b];
       std::fill(body.force.begin(), body.force.end(), Vector4::Zero());
       pace_[b].forget();
-      fields_[b].refresh(body, 0.0);
+      if (loaded(b)) fields_[b].refresh(body, 0.0);
     });
     time_ -= last_step_;
     last_step_ = step_before_;
@@ -771,7 +797,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       const std::vector<Index>& local = body.share()->local;
       for (Field* field : {&body.displacement, &body.velocity, &body.force, &body.director, &body.director_flux, &fields_[b].position, &fields_[b].velocity, &fields_[b].force,
                            &previous_[b], &previous_velocity_[b]})
-        give_back_unused(*field, local);
+        if (!field->empty()) give_back_unused(*field, local);
       body.give_back_motion();
       give_back_unused(terms_, local);
     });
@@ -795,7 +821,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     part.known = part.motion;
     part.known.push_back(&body.force);  // velocities at the present instant need it
     part.whole = part.known;
-    part.whole.insert(part.whole.end(), {&fields.position, &fields.velocity});
+    if (loaded(b)) part.whole.insert(part.whole.end(), {&fields.position, &fields.velocity});
     if constexpr (Body::has_director) part.whole.push_back(&body.director_flux);
     body.for_each_region([&](const auto& region, Index) { part.region_cost.push_back(Body::template cost_of_point<typename std::decay_t<decltype(region)>::Material>); });
     // Interpolated values, and conditions on them, take in the unknowns around.
@@ -861,7 +887,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   double time_ = 0.0, last_step_ = 0.0, step_before_ = 0.0;
   double evaluated_ = 0.0;  // the time at which contacts were last told to move on, s: time_ but for round-off
   std::size_t steps_ = 0;
-  bool drifted_ = false;  // displacements have moved on, forces have not
+  bool drifted_ = false;      // displacements have moved on, forces have not
+  bool forces_known_ = true;  // at the present displacements: not where a step broke down
   double run_start_ = 0.0;
   std::size_t run_start_steps_ = 0;
   bool resumed_ = false;  // the state was restored: the next run goes on with the one that was saved

@@ -39,12 +39,12 @@ class StaticProblem {
       throw ParameterError("Body \"" + body.name() + "\": statics need all of its rows, but several processes share them; compose it without a session, or with SetUp::whole.");
     std::fill(body_.velocity.begin(), body_.velocity.end(), Vector4::Zero());
     fields_.prepare(body_);
-    essential_ = EssentialConditions(with_axis_condition(body_.cloud(), std::move(motions)), body_.particle_values(), fields_.reference,
+    essential_ = EssentialConditions(with_axis_condition(body_.cloud(), std::move(motions)), body_.particle_values(), body_.reference(),
                                      body_.masses());
     fields_.refresh(body_, 0.0);
-    std::apply([&](auto&... term) { (term.initialize(body_.cloud(), fields_.view()), ...); }, terms_);
-    Vector4 least = fields_.reference.front(), most = least;
-    for (const Vector4& X : fields_.reference) least = least.cwiseMin(X), most = most.cwiseMax(X);
+    std::apply([&](auto&... term) { (term.initialize(body_.cloud(), fields_.view(body_)), ...); }, terms_);
+    Vector4 least = body_.reference().front(), most = least;
+    for (const Vector4& X : body_.reference()) least = least.cwiseMin(X), most = most.cwiseMax(X);
     length_ = (most - least).norm();
     assemble_conditions();
     initial_ = conditions_ * unknowns();
@@ -116,7 +116,7 @@ class StaticProblem {
  private:
   template <class Term>
   void add_term(Term& term) {
-    term_energy_ += term.apply(fields_.view(), 0.0);
+    term_energy_ += term.apply(fields_.view(body_), 0.0);
   }
 
   /// Stiffness of the terms in the unknowns: of the particles, and Nᵀ K N where the unknowns are coefficients, u = N a.
@@ -127,7 +127,7 @@ class StaticProblem {
       detail::add_block<dimension>(dimension * static_cast<Eigen::Index>(i), dimension * static_cast<Eigen::Index>(j), fraction_ * k, entries);
     };
     const auto add = [&](const auto& term) {
-      if constexpr (TermWithStiffness<std::decay_t<decltype(term)>>) term.add_stiffness(fields_.view(), emit);
+      if constexpr (TermWithStiffness<std::decay_t<decltype(term)>>) term.add_stiffness(fields_.view(body_), emit);
     };
     std::apply([&](const auto&... term) { (add(term), ...); }, terms_);
     StiffnessMatrix K(n, n);
@@ -159,7 +159,7 @@ class StaticProblem {
     std::vector<double> values;
     const ParticleValues& map = body_.particle_values();
     for (int c = 0; c < dimension; ++c)
-      for (const auto& [particle, motion] : essential_.conditions(c)) {
+      for (const auto& [particle, motion, place] : essential_.conditions(c)) {
         const int row = static_cast<int>(values.size());
         if (map.identity()) {
           entries.emplace_back(row, dimension * static_cast<int>(particle) + c, 1.0);
@@ -168,7 +168,7 @@ class StaticProblem {
           for (std::size_t e = rows.offsets[particle]; e < rows.offsets[particle + 1]; ++e)
             entries.emplace_back(row, dimension * static_cast<int>(rows.particles[e]) + c, rows.values[e]);
         }
-        values.push_back(essential_.motions()[motion].value(fields_.reference[particle].template head<3>(), 0.0)[c]);
+        values.push_back(essential_.motions()[motion].value(place, 0.0)[c]);
       }
     conditions_.resize(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(dimension * body_.size()));
     conditions_.setFromTriplets(entries.begin(), entries.end());
