@@ -53,7 +53,7 @@ TEST_CASE("A checkpoint is read as it was written, to the bit") {
   CHECK(read.parameters == "end-time = 1e-06\n");
   CHECK(read.state == sample().state);
   CHECK(std::signbit(read.state.at("simulation/cell/displacement").values[1]));
-  CHECK(bytes_of(path).starts_with("Tactoid checkpoint, format 1\n"));
+  CHECK(bytes_of(path).starts_with("Tactoid checkpoint, format 2\n"));
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 1);
 }
 
@@ -77,12 +77,12 @@ TEST_CASE("Damaged, foreign and newer checkpoints are refused in one sentence") 
   refused("", "is no checkpoint of Tactoid");
   refused("\211HDF\r\n\032\n" + whole.substr(520), "is no checkpoint of Tactoid");
   std::string newer = whole;
-  newer.replace(newer.find("format 1"), 8, "format 2");
-  refused(newer, "is a checkpoint of format \"2\", but this version of Tactoid");
+  newer.replace(newer.find("format 2"), 8, "format 3");
+  refused(newer, "is a checkpoint of format \"3\", but this version of Tactoid");
   CHECK_THROWS_WITH_AS((void)read_checkpoint(folder.path / "none.h5"), doctest::Contains("Cannot read"), FileError);
   CHECK_THROWS_AS((void)read_checkpoint(folder.path), FileError);
   // What has the right head, and is no HDF5 inside.
-  refused(detail::checkpoint_head("nonsense") + "nonsense", "that HDF5 cannot read");
+  refused(detail::checkpoint_head(detail::block_hash("nonsense")) + "nonsense", "that HDF5 cannot read");
 }
 
 TEST_CASE("A checkpoint that cannot be written leaves the former one") {

@@ -96,7 +96,8 @@ struct OneOfTwo final : Ranks {
   [[nodiscard]] std::string text_of(int, const std::string& text) override { return text; }
   void gather(std::span<double>, std::span<const std::size_t>) override {}
   void gather(std::span<Index>, std::span<const std::size_t>) override {}
-  [[nodiscard]] std::vector<double> at_first(std::span<const double> list) override { return {list.begin(), list.end()}; }
+  [[nodiscard]] std::vector<std::vector<double>> exchange(std::vector<std::vector<double>> lists) override { return lists; }
+  [[nodiscard]] std::unique_ptr<SharedFile> open_shared(const std::filesystem::path&) override { return nullptr; }
   [[nodiscard]] std::shared_ptr<RowShare> divide(const TableOutline&) override { return nullptr; }
   [[nodiscard]] std::shared_ptr<RowShare> share_of(const PointTable&, std::shared_ptr<const CloudPart>) override { return nullptr; }
   [[nodiscard]] std::unique_ptr<Decomposition> decompose(std::vector<SharedBody>) override { return nullptr; }

@@ -8,11 +8,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <tactoid/boundary/all.hpp>
@@ -492,12 +497,80 @@ TEST_CASE("The state of a cell with a director, stuck to a plate, goes from some
   }, 1e-10);
 }
 
+TEST_CASE("Rows of a list go into one file round after round, and come back to those who want them") {
+  const Folder folder;
+  const auto rank = static_cast<std::size_t>(session->rank()), ranks = static_cast<std::size_t>(session->size());
+  const auto value_of = [](std::size_t row, std::size_t c) { return row == 17 ? 0.0 : static_cast<double>(10 * row + c); };  // nobody has row 17
+  for (const std::size_t length : {1u, 40u, 1001u})
+    for (const std::size_t at_a_time : {3u, 64u}) {
+      INFO(length, " rows, ", at_a_time, " at a time");
+      const auto path = folder.path / (std::to_string(length) + "_" + std::to_string(at_a_time) + ".h5");
+      StateArray vectors{.shape = {0, 3}, .values = {}, .rows = {}, .length = length}, whole{.shape = {0}, .values = {}, .whole = true, .rows = {}, .length = length};
+      for (std::size_t row = length; row-- > 0;)  // not in their order
+        if (row * 7919 % ranks == rank && row != 17) {
+          vectors.rows.push_back(row), whole.rows.push_back(row);
+          for (std::size_t c = 0; c < 3; ++c) vectors.values.push_back(value_of(row, c));
+          whole.values.push_back(value_of(row, 0));
+        }
+      std::string offsets;
+      if (rank == 0) {
+        const detail::Hdf5 file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+        const auto of_vectors = detail::make_room(file, "vectors", vectors), of_whole = detail::make_room(file, "of/whole", whole);
+        offsets = std::to_string(of_vectors) + " " + std::to_string(of_whole);
+      }
+      std::istringstream places(session->text_of(0, offsets));
+      std::uint64_t of_vectors = 0, of_whole = 0;
+      places >> of_vectors >> of_whole;
+      const auto shared = session->open_shared(path);
+      detail::write_rows(*shared, of_vectors, vectors, at_a_time);
+      detail::write_rows(*shared, of_whole, whole, at_a_time);
+      shared->close();
+
+      const detail::Hdf5 file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+      const StateArray all = detail::read_set(file, "vectors", nullptr), all_whole = detail::read_set(file, "of/whole", nullptr);
+      REQUIRE(all.values.size() == 3 * length);
+      CHECK(all_whole.whole);
+      for (std::size_t row = 0; row < length; ++row) {
+        for (std::size_t c = 0; c < 3; ++c) CHECK(all.values[3 * row + c] == value_of(row, c));
+        CHECK(all_whole.values[row] == value_of(row, 0));
+      }
+      // Each wants some, also those that another one wants; the last one nothing.
+      StateArray wanted{.shape = {0, 3}, .values = {}, .rows = {}, .length = length};
+      for (std::size_t row = rank; row < length && (rank + 1 < ranks || ranks == 1); row += 2) wanted.rows.insert(wanted.rows.begin(), row);
+      const detail::Hdf5 set(H5Dopen2(file, "vectors", H5P_DEFAULT), H5Dclose);
+      detail::read_rows(set, wanted, at_a_time);
+      REQUIRE(wanted.values.size() == 3 * wanted.rows.size());
+      for (std::size_t k = 0; k < wanted.rows.size(); ++k)
+        for (std::size_t c = 0; c < 3; ++c) CHECK(wanted.values[3 * k + c] == value_of(wanted.rows[k], c));
+    }
+}
+
+TEST_CASE("What does not fit into a file that all ranks write is told on all of them") {
+  const Folder folder;
+  const auto path = folder.path / "small.bin";
+  if (session->rank() == 0) AtomicFile(path).commit();
+  (void)session->largest(0);
+  const auto file = session->open_shared(path);
+  const std::vector<std::byte> bytes(std::size_t{1} << 20);
+  file->write_at(static_cast<std::uint64_t>(session->rank()) * bytes.size(), bytes);
+  rlimit former{};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &former) == 0);
+  const auto former_action = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{static_cast<rlim_t>(session->size()) * bytes.size(), former.rlim_max};  // what is there already fits
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+  file->write_at(static_cast<std::uint64_t>(session->size() + session->rank()) * bytes.size(), bytes);
+  CHECK_THROWS_WITH_AS(file->close(), doctest::Contains("Cannot write \""), FileError);
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &former) == 0);
+  std::signal(SIGXFSZ, former_action);
+}
+
 TEST_CASE("Checkpoints that cannot be written or read are told on all ranks") {
   const Folder folder;
   auto simulation = shaken_slab(box_part(short_bar, part(Rkpm<3>{}.support)));
   const SavedState like = save_state(simulation);
   CHECK_THROWS_WITH_AS(write_checkpoint(folder.path / "nowhere" / "state.h5", {"parts", "", like}), doctest::Contains("Cannot write"), FileError);
   CHECK_THROWS_WITH_AS((void)read_checkpoint(folder.path / "none.h5", like), doctest::Contains("Cannot read"), FileError);
+  CHECK_THROWS_WITH_AS((void)session->open_shared(folder.path / "none.h5"), doctest::Contains("Cannot write"), FileError);
   const auto file = folder.path / "state.h5";
   write_checkpoint(file, {"parts", "a = 1", like});
   CHECK(read_checkpoint(file, like).parameters == "a = 1");

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include <tactoid/core/errors.hpp>
+#include <tactoid/core/shared_file.hpp>
 #include <tactoid/core/tensor.hpp>
 
 namespace tactoid {
@@ -63,8 +65,10 @@ class Ranks {
   virtual void gather(std::span<double> values, std::span<const std::size_t> first) = 0;
   virtual void gather(std::span<Index> values, std::span<const std::size_t> first) = 0;
   ///@}
-  /// The lists of all ranks, one behind the other, on the first rank; nothing on the others. Collective.
-  [[nodiscard]] virtual std::vector<double> at_first(std::span<const double> list) = 0;
+  /// One list for each rank, which gets it; what comes from each of them. Collective.
+  [[nodiscard]] virtual std::vector<std::vector<double>> exchange(std::vector<std::vector<double>> lists) = 0;
+  /// Opens a file that exists, for all ranks to write into. Collective; throws FileError on all of them.
+  [[nodiscard]] virtual std::unique_ptr<SharedFile> open_shared(const std::filesystem::path& path) = 0;
   /// Throws ParameterError on all ranks, with the first rank that differs from rank 0 and what of it, unless all give the same
   /// text. Collective.
   void require_same(std::string_view what, const std::string& text) {

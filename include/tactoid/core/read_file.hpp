@@ -15,10 +15,10 @@
 namespace tactoid {
 
 namespace detail {
-[[noreturn]] inline void fail_file(std::string_view what, const std::filesystem::path& path, int error) {
-  throw FileError(
-      fmt::format("Cannot {} {}: {}.", what, in_quotes(path.string()), std::generic_category().message(error)));
+[[nodiscard]] inline std::string file_failure(std::string_view what, const std::filesystem::path& path, int error) {
+  return fmt::format("Cannot {} {}: {}.", what, in_quotes(path.string()), std::generic_category().message(error));
 }
+[[noreturn]] inline void fail_file(std::string_view what, const std::filesystem::path& path, int error) { throw FileError(file_failure(what, path, error)); }
 }  // namespace detail
 
 /// The whole content of `path`. Throws FileError.

@@ -110,18 +110,6 @@ struct JoinedLists {
   wait(request);
   return joined;
 }
-/// The same on rank 0; nothing on the others. Collective.
-[[nodiscard]] inline std::vector<double> at_first(MPI_Comm ranks, std::span<const double> list) {
-  int rank = 0;
-  MPI_Comm_rank(ranks, &rank);
-  const JoinedLists lists(ranks, list.size());
-  std::vector<double> joined = rank == 0 ? lists.room() : std::vector<double>();
-  MPI_Request request = MPI_REQUEST_NULL;
-  succeeded(MPI_Igatherv(list.data(), as_count(list.size()), MPI_DOUBLE, joined.data(), lists.counts.data(), lists.places.data(), MPI_DOUBLE, 0, ranks, &request));
-  wait(request);
-  return joined;
-}
-
 /// Sums over items that each belong to one rank: each rank its own, then rank after rank.
 class SumByRank {
  public:

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <string>
 #include <thread>
@@ -101,23 +100,33 @@ struct Layout {
   }
 };
 
+///@{
+/// Numbers as MPI knows them.
+[[nodiscard]] inline MPI_Datatype type_of(double) { return MPI_DOUBLE; }
+[[nodiscard]] inline MPI_Datatype type_of(std::uint32_t) { return MPI_UINT32_T; }
+///@}
+
 /// Lists for each rank, which it gets: the lists that all ranks have for this one. Collective.
-[[nodiscard]] inline std::vector<std::vector<Index>> exchange_lists(MPI_Comm ranks, const std::vector<std::vector<Index>>& lists) {
+template <class T>
+[[nodiscard]] std::vector<std::vector<T>> exchange_lists(MPI_Comm ranks, const std::vector<std::vector<T>>& lists) {
   const std::size_t n = lists.size();
   std::vector<int> counts(n), places(n + 1, 0), arriving(n), arriving_places(n + 1, 0);
-  std::vector<Index> out;
+  std::vector<T> out;
   for (std::size_t r = 0; r < n; ++r) {
     counts[r] = as_count(lists[r].size());
-    places[r + 1] = places[r] + counts[r];
     out.insert(out.end(), lists[r].begin(), lists[r].end());
+    places[r + 1] = as_count(out.size());
   }
-  succeeded(MPI_Alltoall(counts.data(), 1, MPI_INT, arriving.data(), 1, MPI_INT, ranks));
-  std::partial_sum(arriving.begin(), arriving.end(), arriving_places.begin() + 1);
-  std::vector<Index> in(static_cast<std::size_t>(arriving_places[n]) + 1);
-  static_assert(sizeof(Index) == sizeof(std::uint32_t));
+  MPI_Request request = MPI_REQUEST_NULL;
+  succeeded(MPI_Ialltoall(counts.data(), 1, MPI_INT, arriving.data(), 1, MPI_INT, ranks, &request));
+  wait(request);
+  std::size_t all = 0;
+  for (std::size_t r = 0; r < n; ++r) all += static_cast<std::size_t>(arriving[r]), arriving_places[r + 1] = as_count(all);
+  std::vector<T> in(all + 1);
   out.push_back(0);
-  succeeded(MPI_Alltoallv(out.data(), counts.data(), places.data(), MPI_UINT32_T, in.data(), arriving.data(), arriving_places.data(), MPI_UINT32_T, ranks));
-  std::vector<std::vector<Index>> result(n);
+  succeeded(MPI_Ialltoallv(out.data(), counts.data(), places.data(), type_of(T{}), in.data(), arriving.data(), arriving_places.data(), type_of(T{}), ranks, &request));
+  wait(request);
+  std::vector<std::vector<T>> result(n);
   for (std::size_t r = 0; r < n; ++r) result[r].assign(in.begin() + arriving_places[r], in.begin() + arriving_places[r + 1]);
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,7 @@
 #include <tactoid/mpi/divided_bodies.hpp>
 #include <tactoid/mpi/parcels.hpp>
 #include <tactoid/mpi/part_of_body.hpp>
+#include <tactoid/mpi/shared_file.hpp>
 
 namespace tactoid::mpi {
 
@@ -93,7 +95,11 @@ class Session final : public Ranks {
   }
   void gather(std::span<double> values, std::span<const std::size_t> first) override { gather(values.data(), first, MPI_DOUBLE); }
   void gather(std::span<Index> values, std::span<const std::size_t> first) override { gather(values.data(), first, MPI_UINT32_T); }
-  [[nodiscard]] std::vector<double> at_first(std::span<const double> list) override { return size_ == 1 ? std::vector<double>(list.begin(), list.end()) : mpi::at_first(ranks_, list); }
+  [[nodiscard]] std::vector<std::vector<double>> exchange(std::vector<std::vector<double>> lists) override { return size_ == 1 ? lists : exchange_lists(ranks_, lists); }
+  [[nodiscard]] std::unique_ptr<SharedFile> open_shared(const std::filesystem::path& path) override {
+    if (size_ == 1) return std::make_unique<FileOfOne>(path);
+    return std::make_unique<FileOfRanks>(*this, ranks_, path);
+  }
   [[nodiscard]] std::shared_ptr<RowShare> divide(const TableOutline& outline) override {
     ChunkGraph graph;
     add_chunks(graph, outline.table->particles, outline.touched, outline.cost);

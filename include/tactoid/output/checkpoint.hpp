@@ -9,12 +9,11 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,9 +25,12 @@
 #include <tactoid/core/hdf5.hpp>
 #include <tactoid/core/ranks.hpp>
 #include <tactoid/core/read_file.hpp>
+#include <tactoid/core/shared_file.hpp>
 #include <tactoid/core/state.hpp>
 #include <tactoid/core/version.hpp>
+#include <tactoid/output/block_hash.hpp>
 #include <tactoid/output/file.hpp>
+#include <tactoid/output/shared_rows.hpp>
 
 namespace tactoid {
 
@@ -40,7 +42,7 @@ struct Checkpoint {
 };
 
 /// Version of the files that write_checkpoint writes; read_checkpoint reads this one.
-inline constexpr int checkpoint_format = 1;
+inline constexpr int checkpoint_format = 2;
 
 namespace detail {
 
@@ -62,38 +64,12 @@ namespace detail {
 
 constexpr std::size_t checkpoint_head_size = 512;  // a user block of HDF5
 
-/// FNV-1a.
-class ByteHash {
- public:
-  void add(std::string_view bytes) {
-    for (const char c : bytes) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
-    count_ += bytes.size();
-  }
-  /// What is left of a file; false where it cannot be read.
-  [[nodiscard]] bool add_rest(std::FILE* file) {
-    std::string bytes(std::size_t{1} << 20, '\0');
-    for (std::size_t n = 0; (n = std::fread(bytes.data(), 1, bytes.size(), file)) > 0;) add(std::string_view(bytes).substr(0, n));
-    return std::ferror(file) == 0;
-  }
-  [[nodiscard]] std::uint64_t value() const { return hash_; }
-  [[nodiscard]] std::size_t count() const { return count_; }
-
- private:
-  std::uint64_t hash_ = 0xCBF29CE484222325ull;
-  std::size_t count_ = 0;
-};
-
 /// The first line of a checkpoint says what it is, the next ones how many bytes follow, and their hash: so that a damaged
 /// file is known before any of it is believed.
-[[nodiscard]] inline std::string checkpoint_head(const ByteHash& body) {
-  std::string head = fmt::format("Tactoid checkpoint, format {}\nbytes {}\nhash {:016x}\n", checkpoint_format, body.count(), body.value());
+[[nodiscard]] inline std::string checkpoint_head(const BlockHash& body) {
+  std::string head = fmt::format("Tactoid checkpoint, format {}\nbytes {}\nhash {:016x}\n", checkpoint_format, body.bytes, body.value);
   head.resize(checkpoint_head_size, '\0');
   return head;
-}
-[[nodiscard]] inline std::string checkpoint_head(std::string_view body) {
-  ByteHash hash;
-  hash.add(body);
-  return checkpoint_head(hash);
 }
 
 inline constexpr const char* checkpoint_mark = "Tactoid checkpoint, format ";
@@ -111,113 +87,88 @@ inline void write_about(hid_t file, const Checkpoint& checkpoint) {
   write_attribute(file, "parameters", checkpoint.parameters);
   write_attribute(file, "version", version);
 }
-/// An empty data set of the state; `shape` is that of the whole.
-[[nodiscard]] inline hid_t create_set(hid_t file, const std::string& name, const std::vector<hsize_t>& shape, bool whole) {
+/// An empty data set of the state.
+[[nodiscard]] inline hid_t create_set(hid_t file, const std::string& name, const std::vector<hsize_t>& shape, hid_t type, hid_t creation = H5P_DEFAULT) {
   const Hdf5 links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   hdf5_succeeded(H5Pset_create_intermediate_group(links, 1));
   const Hdf5 space(shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  const hid_t set = H5Dcreate2(file, name.c_str(), whole ? H5T_STD_I64LE : H5T_IEEE_F64LE, space, links, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t set = H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT);
   const std::string_view unit = unit_of(name);
   if (set >= 0 && !unit.empty()) write_attribute(set, "unit", unit);
   return set;
 }
 /// A data set that one process has.
 inline void write_set(hid_t file, const std::string& name, const StateArray& array) {
-  const Hdf5 set(create_set(file, name, {array.shape.begin(), array.shape.end()}, array.whole), H5Dclose);
+  const Hdf5 set(create_set(file, name, {array.shape.begin(), array.shape.end()}, array.whole ? H5T_STD_I64LE : H5T_IEEE_F64LE), H5Dclose);
   if (!array.values.empty()) hdf5_succeeded(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
 }
 
-/// The places of the rows that are here, by their numbers in the whole.
-[[nodiscard]] inline std::vector<std::size_t> places_in_order(const StateArray& array) {
-  std::vector<std::size_t> order(array.rows.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return array.rows[a] < array.rows[b]; });
-  return order;
+/// A data set of which several processes will write rows; returns where in the file it begins.
+[[nodiscard]] inline std::uint64_t make_room(hid_t file, const std::string& name, const StateArray& array) {
+  std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
+  shape[0] = array.length;
+  const Hdf5 creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  hdf5_succeeded(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY));
+  hdf5_succeeded(H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER));
+  const Hdf5 set(create_set(file, name, shape, array.whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, creation), H5Dclose);
+  const haddr_t offset = H5Dget_offset(set);
+  if (offset == HADDR_UNDEF) throw FileError("HDF5 refused a part of a checkpoint.");
+  return offset;
 }
 
-/// A data set of which several processes have rows each: they come to the first one piece by piece; what nobody has is 0. `set` is used there alone; where it cannot be written to,
-/// all go on, and the first one's `failure` says so. Collective.
-inline void write_rows(const hid_t* set, const StateArray& array, std::string& failure) {
-  Ranks* const ranks = Ranks::current;
-  const std::size_t width = array.shape.size() > 1 ? array.shape[1] : 1;
-  const std::vector<std::size_t> order = places_in_order(array);
-  std::vector<double> list, piece;
-  auto next = order.begin();
-  for (std::size_t first = 0; first < array.length; first += rows_at_a_time) {
-    const std::size_t count = std::min(rows_at_a_time, array.length - first);
-    list.clear();
-    for (; next != order.end() && array.rows[*next] < first + count; ++next) {
-      list.push_back(static_cast<double>(array.rows[*next] - first));
-      list.insert(list.end(), array.values.begin() + static_cast<std::ptrdiff_t>(*next * width), array.values.begin() + static_cast<std::ptrdiff_t>((*next + 1) * width));
-    }
-    if (ranks != nullptr) list = ranks->at_first(list);
-    if (set == nullptr || !failure.empty()) continue;
-    piece.assign(count * width, 0.0);
-    for (std::size_t k = 0; k < list.size(); k += width + 1) std::copy_n(list.data() + k + 1, width, piece.data() + static_cast<std::size_t>(list[k]) * width);
-    try {
-      SetRows(first, count, width, array.shape.size() > 1).transfer(*set, H5Dwrite, H5T_NATIVE_DOUBLE, piece.data());
-    } catch (const FileError& error) {
-      failure = error.what();
-    }
-  }
-}
-
-/// Writes a checkpoint of which several processes have rows each. Collective; throws FileError on all of them.
+/// Writes a checkpoint of which several processes have rows each: the first one makes the file with room for them, then all write. Collective; throws FileError on all of them.
 inline void write_checkpoint_in_rows(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  const bool writes = is_first_rank();
+  Ranks* const ranks = Ranks::current;
   std::optional<AtomicFile> out;
-  std::string failure;
-  const auto attempt = [&](const auto& work) {
-    if (!writes || !failure.empty()) return;
-    try {
-      work();
-    } catch (const std::exception& error) {
-      failure = error.what();
-    }
-  };
-  {
-    const QuietHdf5 quiet;
-    std::optional<Hdf5> file;
-    attempt([&] {
-      out.emplace(path);
-      const Hdf5 creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-      hdf5_succeeded(H5Pset_userblock(creation, checkpoint_head_size));
-      file.emplace(H5Fcreate(out->temporary().c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose);
-      write_about(*file, checkpoint);
-    });
-    for (const auto& [name, array] : checkpoint.state) {
-      if (array.length == 0) {
-        attempt([&] { write_set(*file, name, array); });
-        continue;
+  std::string temporary, offsets;  // of the lists, in their order, with blanks between them
+  const auto by_first_rank = [&](const auto& work) {
+    std::string failure;
+    if (is_first_rank()) {
+      try {
+        work();
+      } catch (const std::exception& error) {
+        failure = error.what();
       }
-      std::optional<Hdf5> set;
-      attempt([&] {
-        std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
-        shape[0] = array.length;
-        set.emplace(create_set(*file, name, shape, array.whole), H5Dclose);
-      });
-      const hid_t id = set ? hid_t(*set) : -1;
-      write_rows(set ? &id : nullptr, array, failure);
     }
-    attempt([&] { hdf5_succeeded(H5Fflush(*file, H5F_SCOPE_GLOBAL)); });
+    if (ranks != nullptr) failure = ranks->first_failure(failure);
+    if (!failure.empty()) throw FileError(failure);
+  };
+  by_first_rank([&] {
+    out.emplace(path);
+    temporary = out->temporary().string();
+    const QuietHdf5 quiet;
+    const Hdf5 creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    hdf5_succeeded(H5Pset_userblock(creation, checkpoint_head_size));
+    const Hdf5 file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose);
+    write_about(file, checkpoint);
+    for (const auto& [name, array] : checkpoint.state) {
+      if (array.length == 0) write_set(file, name, array);
+      else offsets += fmt::format("{} ", make_room(file, name, array));
+    }
+    hdf5_succeeded(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  });
+  if (ranks != nullptr) temporary = ranks->text_of(0, temporary), offsets = ranks->text_of(0, offsets);
+
+  const std::unique_ptr<SharedFile> file = ranks != nullptr ? ranks->open_shared(temporary) : std::make_unique<FileOfOne>(temporary);
+  std::istringstream next(offsets);
+  for (const auto& [name, array] : checkpoint.state) {
+    std::uint64_t offset = 0;
+    if (array.length > 0 && next >> offset) write_rows(*file, offset, array);
   }
-  attempt([&] {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(out->temporary().c_str(), "rb"), std::fclose);
-    ByteHash hash;
-    if (file == nullptr || std::fseek(file.get(), checkpoint_head_size, SEEK_SET) != 0 || !hash.add_rest(file.get())) fail_file("write", path, errno);
+  file->close();
+  const BlockHash hash = block_hash(temporary, checkpoint_head_size);
+  by_first_rank([&] {
     out->write(checkpoint_head(hash));  // at the beginning, which HDF5 has left free
     out->commit(true);
   });
-  if (Ranks::current != nullptr) failure = Ranks::current->first_failure(failure);
-  if (!failure.empty()) throw FileError(failure);
 }
 
 }  // namespace detail
 
 /// Writes a checkpoint: an HDF5 file behind a head of 512 bytes, which Python's h5py opens as it is. Names of the state are
 /// groups and data sets, those of bodies with their units; `program`, `parameters`, `version` are attributes. The file appears
-/// whole or not at all; a former one at this path stays until then. The first of several processes writes. Where these have parts of the state, all must call it: what they have comes to the first
-/// one piece by piece, and stands in the file as in that of one process. Throws FileError.
+/// whole or not at all; a former one at this path stays until then. The first of several processes writes. Where these have parts of the state, all must call it, and
+/// all write at once, each some rows of every list (Ranks::open_shared); the file is as that of one process. Throws FileError.
 inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   if (std::any_of(checkpoint.state.begin(), checkpoint.state.end(), [](const auto& named) { return named.second.length > 0; })) return detail::write_checkpoint_in_rows(path, checkpoint);
   if (!is_first_rank()) return;  // the state is whole on all of several processes
@@ -242,7 +193,7 @@ inline void write_checkpoint(const std::filesystem::path& path, const Checkpoint
   const std::string_view signature("\211HDF\r\n\032\n", 8);
   if (image.compare(0, signature.size(), signature) != 0) image.erase(0, detail::checkpoint_head_size);
   AtomicFile out(path);
-  out.write(detail::checkpoint_head(image));
+  out.write(detail::checkpoint_head(detail::block_hash(image)));
   out.write(image);
   out.commit(true);
 }
@@ -263,20 +214,10 @@ namespace detail {
     if (!array.values.empty()) hdf5_succeeded(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
     return array;
   }
-  const std::size_t width = shape.size() > 1 ? static_cast<std::size_t>(shape[1]) : 1;
   array.rows = wanted->rows;
   array.length = wanted->length;
   array.shape[0] = array.rows.size();
-  array.values.resize(array.rows.size() * width);
-  const std::vector<std::size_t> order = places_in_order(array);
-  std::vector<double> piece;
-  for (auto next = order.begin(); next != order.end();) {
-    const std::size_t first = array.rows[*next], count = std::min(rows_at_a_time, array.rows[order.back()] + 1 - first);
-    piece.resize(count * width);
-    SetRows(first, count, width, shape.size() > 1).transfer(set, H5Dread, H5T_NATIVE_DOUBLE, piece.data());
-    for (; next != order.end() && array.rows[*next] < first + count; ++next)
-      std::copy_n(piece.data() + (array.rows[*next] - first) * width, width, array.values.data() + *next * width);
-  }
+  read_rows(set, array);
   return array;
 }
 
@@ -320,7 +261,7 @@ namespace detail {
   std::string bytes = read_file(path);  // HDF5 takes it as if it might change it
   if (const std::string why = detail::why_no_checkpoint(bytes); !why.empty()) refuse(why);
   if (bytes.size() <= detail::checkpoint_head_size ||
-      bytes.substr(0, detail::checkpoint_head_size) != detail::checkpoint_head(std::string_view(bytes).substr(detail::checkpoint_head_size)))
+      bytes.substr(0, detail::checkpoint_head_size) != detail::checkpoint_head(detail::block_hash(std::string_view(bytes).substr(detail::checkpoint_head_size))))
     refuse("is a damaged checkpoint: it is cut off, or some of its bytes have changed");
 
   try {
@@ -342,40 +283,42 @@ namespace detail {
 ///   const SavedState like = save_state(simulation);
 ///   restore_state(simulation, read_checkpoint("checkpoint.h5", like).state);
 ///
-/// Whether the file is damaged the first process finds out. Collective; throws FileError on all of them as above.
+/// Each process looks at a share of the file for damage, and reads a share of the rows and tells the others. Collective; throws FileError on all of them as above.
 [[nodiscard]] inline Checkpoint read_checkpoint(const std::filesystem::path& path, const SavedState& like) {
-  std::string why;
-  const auto together = [&](const auto& work) {
-    try {
-      work();
-    } catch (const std::exception& error) {
-      why = error.what();
-    }
-    if (Ranks::current != nullptr) why = Ranks::current->first_failure(why);
-    if (!why.empty()) throw FileError(why);
+  Ranks* const ranks = Ranks::current;
+  std::string failure;
+  const auto refuse = [&](std::string_view why) { failure = fmt::format("{} {}.", in_quotes(path.string()), why); };
+  const auto tell = [&] {
+    if (ranks != nullptr) failure = ranks->first_failure(failure);
+    if (!failure.empty()) throw FileError(failure);
   };
-  together([&] {
-    if (!is_first_rank()) return;
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-    if (file == nullptr) detail::fail_file("read", path, errno);
-    std::string head(detail::checkpoint_head_size, '\0');
+  std::string head;
+  if (const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose); file == nullptr) {
+    failure = detail::file_failure("read", path, errno);
+  } else {
+    head.resize(detail::checkpoint_head_size);
     head.resize(std::fread(head.data(), 1, head.size(), file.get()));
-    std::string failure = detail::why_no_checkpoint(head);
-    detail::ByteHash hash;
-    if (std::ferror(file.get()) != 0 || (failure.empty() && !hash.add_rest(file.get()))) detail::fail_file("read", path, errno);
-    if (failure.empty() && head != detail::checkpoint_head(hash)) failure = "is a damaged checkpoint: it is cut off, or some of its bytes have changed";
-    if (!failure.empty()) throw FileError(fmt::format("{} {}.", in_quotes(path.string()), failure));
-  });
+    if (std::ferror(file.get()) != 0) failure = detail::file_failure("read", path, errno);
+    else if (const std::string why = detail::why_no_checkpoint(head); !why.empty()) refuse(why);
+  }
+  tell();
+  if (head != detail::checkpoint_head(detail::block_hash(path, detail::checkpoint_head_size))) refuse("is a damaged checkpoint: it is cut off, or some of its bytes have changed");
+  tell();
+  const detail::QuietHdf5 quiet;
+  std::optional<detail::Hdf5> file;
+  try {
+    file.emplace(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  } catch (const FileError&) {
+    refuse("is a checkpoint that HDF5 cannot read");
+  }
+  tell();
   Checkpoint checkpoint;
-  together([&] {
-    const detail::QuietHdf5 quiet;
-    try {
-      const detail::Hdf5 file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-      checkpoint = detail::read_everything(file, &like);
-    } catch (const FileError&) {
-      throw FileError(fmt::format("{} is a checkpoint that HDF5 cannot read.", in_quotes(path.string())));
-    }
-  });
+  try {
+    checkpoint = detail::read_everything(*file, &like);
+  } catch (const FileError&) {
+    refuse("is a checkpoint that HDF5 cannot read");
+  }
+  tell();
   return checkpoint;
 }
 
