@@ -46,6 +46,22 @@ struct Combined {
     return std::apply([&](const auto&... part) { return (0.0 + ... + part.stiffness_rate(a, b)); }, parts);
   }
 
+  /// Where all parts that read every particle of A say so.
+  [[nodiscard]] bool reads_own_alone() const
+    requires(reads_a == Reads::all)
+  {
+    return std::apply([](const auto&... part) { return (tactoid::reads_own_alone(part) && ...); }, parts);
+  }
+  /// Of the parts that have one.
+  void tell_own(Ranks& ranks, const std::vector<Index>& own)
+    requires(TellsOwn<Parts> || ...)
+  {
+    const auto tell = [&](auto& part) {
+      if constexpr (TellsOwn<std::decay_t<decltype(part)>>) part.tell_own(ranks, own);
+    };
+    std::apply([&](auto&... part) { (tell(part), ...); }, parts);
+  }
+
   /// Of the parts that have one.
   template <class Emit>
     requires(ContactWithStiffness<Parts> || ...)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <vector>
 
 #include <tactoid/core/tensor.hpp>
 #include <tactoid/core/unsatisfied.hpp>
@@ -42,6 +43,17 @@ inline constexpr Reads reads_b_of = [] {
   if constexpr (requires { C::reads_b; }) return C::reads_b;
   else return Reads::all;
 }();
+
+/// Whether a Contact needs of body A no particles but those on facets and those of its own process, where processes sum in their own order
+/// (ParticleFields::own): `reads_own_alone()` of one that may read everything. It must then add up energies and rates over the processes by itself.
+template <class C>
+[[nodiscard]] bool reads_own_alone(const C& contact) {
+  if constexpr (requires { { contact.reads_own_alone() } -> std::convertible_to<bool>; }) return contact.reads_own_alone();
+  else return reads_a_of<C> == Reads::facets;
+}
+/// A Contact whose processes each know something of their own particles of A: `tell_own(ranks, own)` tells it all of them, for observers and checkpoints. Collective.
+template <class C>
+concept TellsOwn = requires(C& contact, Ranks& ranks, const std::vector<Index>& own) { contact.tell_own(ranks, own); };
 
 /// A Contact that knows its stiffness, with which implicit steps converge fast: `add_stiffness(a, b, emit)` calls
 /// emit(of_b, i, by_b, j, K) with K = −∂f_i/∂x_j (3 × 3, N/m) for pairs of particles, at the state of the last call of `apply`;

@@ -31,13 +31,20 @@ class ClosestPointTracker {
   /// Global search for all query points (m) on the surface with its nodes at `x` (m). Query points further away than
   /// `reach` (m) plus the motion until the next global search need not be followed until then.
   void search(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
-              double reach = std::numeric_limits<double>::infinity());
+              double reach = std::numeric_limits<double>::infinity()) {
+    search(surface, queries, x, reach, nullptr);
+  }
 
   /// Closest points at the present positions. Query points whose gap cannot have come below `reach` (m) since the
   /// last global search are not followed: they keep the gap of that search, which is larger than `reach`. Collective with
   /// `ranks`, all of which must give the same: each follows a share of the points, where there are enough of them.
   void update(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
               double reach = std::numeric_limits<double>::infinity(), Ranks* ranks = nullptr);
+
+  /// The same for `own` query points alone, where each of the processes has others; what is kept of the others falls behind. Collective.
+  void update_own(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x, double reach, Ranks& ranks, const std::vector<Index>& own);
+  /// Tells what update_own() left of `own` query points to all processes. Collective.
+  void tell_own(Ranks& ranks, const std::vector<Index>& own);
 
   /// Local minimum of the distance from q (m) over a facet and its neighbours, from facet `f` downhill.
   static ClosestPoint<D> walk(const FacetSurface<D>& surface, Index f, std::span<const Vector4> x, const Vector3& q);
@@ -90,6 +97,8 @@ class ClosestPointTracker {
     c.normal = place.template segment<3>(D + 2);
     c.gap = place[D + 5];
   }
+  /// The global search for some query points; null: for all.
+  void search(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x, double reach, const std::vector<Index>* some);
   /// Points that must be followed until the next global search.
   void find_awake();
   /// Follows some of them: numbers [begin, end) of awake_.
@@ -109,8 +118,8 @@ class ClosestPointTracker {
   static bool rises_toward(const FacetSurface<D>& surface, Index f, std::size_t k, const FacetProjection<D>& p,
                            std::span<const Vector4> x, const Vector3& q);
 
-  /// Bound of how far a query point and the surface can have moved against each other since the last search.
-  double motion(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x) const;
+  /// Bound of how far a query point (one of `some`; null: any) and the surface can have moved against each other since the last search.
+  double motion(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x, const std::vector<Index>* some = nullptr) const;
 
   std::vector<ClosestPoint<D>> closest_;
   std::vector<char> asleep_;         // too far away to matter before the next global search

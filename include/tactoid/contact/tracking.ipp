@@ -8,7 +8,7 @@ namespace tactoid {
 
 template <int D>
 void ClosestPointTracker<D>::search(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x,
-                                    double reach) {
+                                    double reach, const std::vector<Index>* some) {
   const std::size_t count = surface.facets.size();
   std::vector<Point<D>> middle(count);
   std::vector<Extent> extent(count);
@@ -31,21 +31,23 @@ void ClosestPointTracker<D>::search(const FacetSurface<D>& surface, std::span<co
   // That of the first search, for good: an implicit step may try a state in which facets are huge.
   if (!(facet_size_ > 0.0) && std::isfinite(sum)) facet_size_ = 2.0 * sum / static_cast<double>(count);
   reach_ = reach;
-  closest_.assign(queries.size(), {});
+  closest_.resize(queries.size());
   asleep_.assign(queries.size(), 0);
   queries_then_.assign(queries.begin(), queries.end());
   nodes_then_.resize(surface.nodes.size());
   for (std::size_t k = 0; k < surface.nodes.size(); ++k) nodes_then_[k] = x[surface.nodes[k]];
   if (!std::isfinite(sum)) {  // a motion that broke down: the gaps say so
-    for (auto& c : closest_) c.gap = std::numeric_limits<double>::quiet_NaN();
+    for (auto& c : closest_) c = {}, c.gap = std::numeric_limits<double>::quiet_NaN();
     find_awake();
     return;
   }
   const NeighborSearch<D> tree{middle};
-  parallel_for(queries.size(), [&](std::size_t i) {
+  parallel_for(some != nullptr ? some->size() : queries.size(), [&](std::size_t k) {
+    const std::size_t i = some != nullptr ? (*some)[k] : k;
     const Vector3 q = queries[i].template head<3>();
     const Point<D> p = queries[i].template head<D>();
     if (!q.allFinite()) {
+      closest_[i] = {};
       closest_[i].gap = std::numeric_limits<double>::quiet_NaN();
       return;
     }
@@ -120,6 +122,44 @@ void ClosestPointTracker<D>::update(const FacetSurface<D>& surface, std::span<co
 }
 
 template <int D>
+void ClosestPointTracker<D>::update_own(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x, double reach,
+                                        Ranks& ranks, const std::vector<Index>& own) {
+  // Nobody knows all motions: the processes search together, as one would.
+  const bool moved = closest_.size() != queries.size() || reach > reach_ || !(motion(surface, queries, x, &own) <= search_after * facet_size_);
+  if (ranks.largest(moved ? 1 : 0) > 0) return search(surface, queries, x, reach, &own);
+  parallel_for(own.size(), [&](std::size_t k) {
+    const Index i = own[k];
+    if (!asleep_[i]) closest_[i] = walk(surface, closest_[i].facet, x, queries[i].template head<3>());
+  });
+}
+
+template <int D>
+void ClosestPointTracker<D>::tell_own(Ranks& ranks, const std::vector<Index>& own) {
+  constexpr std::size_t width = D + 13;
+  std::vector<double> list;
+  list.reserve(own.size() * width);
+  for (const Index i : own) {
+    const ClosestPoint<D>& c = closest_[i];
+    const Place place = place_of(c);
+    for (const double x : {double(i), double(c.facet), c.on_rim ? 1.0 : 0.0, asleep_[i] ? 1.0 : 0.0}) list.push_back(x);
+    list.insert(list.end(), place.data(), place.data() + place.size());
+    list.insert(list.end(), queries_then_[i].data(), queries_then_[i].data() + 3);
+  }
+  for (const std::vector<double>& told : ranks.exchange(std::vector(static_cast<std::size_t>(ranks.size()), list)))
+    for (std::size_t k = 0; k < told.size(); k += width) {
+      const double* v = told.data() + k;
+      const auto i = static_cast<Index>(v[0]);
+      ClosestPoint<D>& c = closest_[i];
+      c.facet = static_cast<Index>(v[1]);
+      c.on_rim = v[2] != 0.0;
+      asleep_[i] = v[3] != 0.0;
+      put(Eigen::Map<const Place>(v + 4), c);
+      queries_then_[i].template head<3>() = Eigen::Map<const Vector3>(v + D + 10);
+    }
+  find_awake();
+}
+
+template <int D>
 ClosestPoint<D> ClosestPointTracker<D>::walk(const FacetSurface<D>& surface, Index f, std::span<const Vector4> x,
                                              const Vector3& q) {
   FacetProjection<D> here = project_on_facet(surface, f, x, q);
@@ -185,10 +225,12 @@ bool ClosestPointTracker<D>::rises_toward(const FacetSurface<D>& surface, Index 
 
 template <int D>
 double ClosestPointTracker<D>::motion(const FacetSurface<D>& surface, std::span<const Vector4> queries,
-                                      std::span<const Vector4> x) const {
+                                      std::span<const Vector4> x, const std::vector<Index>* some) const {
   double of_queries = 0.0, of_nodes = 0.0;
-  for (std::size_t i = 0; i < queries.size(); ++i)
+  for (std::size_t k = 0; k < (some != nullptr ? some->size() : queries.size()); ++k) {
+    const std::size_t i = some != nullptr ? (*some)[k] : k;
     of_queries = std::max(of_queries, (queries[i] - queries_then_[i]).squaredNorm());
+  }
   for (std::size_t k = 0; k < surface.nodes.size(); ++k)
     of_nodes = std::max(of_nodes, (x[surface.nodes[k]] - nodes_then_[k]).squaredNorm());
   return std::sqrt(of_queries) + std::sqrt(of_nodes);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include <tactoid/contact/tracking.hpp>
 #include <tactoid/core/errors.hpp>
 #include <tactoid/core/parallel.hpp>
+#include <tactoid/core/ranks.hpp>
 #include <tactoid/geometry/particle_fields.hpp>
 
 namespace tactoid {
@@ -23,8 +26,11 @@ struct ParticlesOnSurface {
   std::vector<double> gaps;      ///< signed, per particle of the first body, m
   Field forces;                  ///< scratch: on the particles, N
   std::vector<double> energies;  ///< scratch: energy (J) or power (W) of each particle
-  /// Brings closest points and gaps to the present positions, m; `ranks`: as ClosestPointTracker takes them.
-  void update(std::span<const Vector4> particles, std::span<const Vector4> surface, Ranks* ranks = nullptr);
+  double rate = 0.0;             ///< scratch: largest ω² of the particles of all processes, where each computes its own, 1/s²
+  /// Brings closest points and gaps to the present positions, m; `ranks`: as ClosestPointTracker takes them, and `own` particles alone, unless it is null.
+  void update(std::span<const Vector4> particles, std::span<const Vector4> surface, Ranks* ranks = nullptr, const std::vector<Index>* own = nullptr);
+  /// Makes what is known of `own` particles known to all processes. Collective.
+  void tell_own(Ranks& ranks, const std::vector<Index>& own);
   /// For checkpoints: gaps, and the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) {
@@ -70,6 +76,11 @@ struct VanDerWaals {
   /// G/d₀ e^{−g/d₀} at the least gap, 1/s²; with `reaction` for the surface of B too.
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
 
+  /// Whether a process that shares A can do with its own particles (ParticleFields::own): the reaction on B is a sum over all of them.
+  [[nodiscard]] bool reads_own_alone() const { return !reaction; }
+  /// Tells all processes the gaps and closest points of the particles of each of them. Collective.
+  void tell_own(Ranks& ranks, const std::vector<Index>& own);
+
   /// Of each particle of A on itself, at the gaps of the last call of apply. That the surface of B moves, and the reaction on it, are left out: matrices stay
   /// as sparse as without them, and the surface moves little in the range of the force.
   template <class Emit>
@@ -85,7 +96,7 @@ struct VanDerWaals {
     });
   }
 
-  /// Signed gap of every particle of A (inside and on the surface) at the last call of apply, m.
+  /// Signed gap of every particle of A (inside and on the surface) at the last call of apply, m; where each process computes its own, of all particles after tell_own().
   [[nodiscard]] std::span<const double> gaps() const;
   /// For checkpoints: gaps, and the closest points that are followed.
   template <class Archive>
@@ -94,20 +105,29 @@ struct VanDerWaals {
  private:
   template <int D>
   TermEnergy apply_to(ParticlesOnSurface<D>& p, const ParticleFields& a, const ParticleFields& b) const {
-    p.update(a.position, b.position, b.ranks);
+    const std::vector<Index>* const own = own_particles(a);
+    p.update(a.position, b.position, b.ranks, own);
     const auto closest = p.tracker.closest();
     p.forces.resize(closest.size());
     p.energies.resize(closest.size());
-    parallel_for(closest.size(), [&](std::size_t i) {
+    const std::size_t count = own != nullptr ? own->size() : closest.size();
+    parallel_for(count, [&](std::size_t k) {
+      const std::size_t i = own != nullptr ? (*own)[k] : k;
       const double decay = std::exp(-std::max(closest[i].gap, 0.0) / range), weight = a.mass[i] * strength;
       p.forces[i] = pad(Vector3(-weight * decay * closest[i].normal));
       a.force[i] += p.forces[i];
-      p.energies[i] =
+      p.energies[k] =
           reaction ? -weight * (range * decay - std::min(closest[i].gap, 0.0)) : p.forces[i].dot(a.velocity[i]);
     });
     TermEnergy total;
     double& energy = reaction ? total.potential : total.external_power;
-    for (const double e : p.energies) energy += e;
+    for (std::size_t k = 0; k < count; ++k) energy += p.energies[k];
+    if (own != nullptr) {
+      const std::array together{energy, rate_of_own(p, *own)};
+      const std::vector<double> all = a.ranks->gather_from_each(together);
+      energy = p.rate = 0.0;
+      for (std::size_t k = 0; k < all.size(); k += together.size()) energy += all[k], p.rate = std::max(p.rate, all[k + 1]);
+    }
     if (!reaction) return total;
     for (std::size_t i = 0; i < closest.size(); ++i) {
       const auto& onto = p.master.facets[closest[i].facet];
@@ -117,8 +137,18 @@ struct VanDerWaals {
     return total;
   }
 
+  [[nodiscard]] const std::vector<Index>* own_particles(const ParticleFields& a) const { return reads_own_alone() ? a.own : nullptr; }
+
+  template <int D>
+  double rate_of_own(const ParticlesOnSurface<D>& p, const std::vector<Index>& own) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Index i : own) least = std::min(least, std::max(p.tracker.closest()[i].gap, 0.0));
+    return strength / range * std::exp(-least / range);
+  }
+
   template <int D>
   double rate_of(const ParticlesOnSurface<D>& p, const ParticleFields& a, const ParticleFields& b) const {
+    if (own_particles(a) != nullptr) return p.rate;
     std::vector<double> sum(reaction ? b.mass.size() : 0, 0.0);
     double rate = 0.0;
     const auto closest = p.tracker.closest();

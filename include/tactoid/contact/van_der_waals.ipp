@@ -6,11 +6,22 @@
 namespace tactoid {
 
 template <int D>
-void ParticlesOnSurface<D>::update(std::span<const Vector4> particles, std::span<const Vector4> surface, Ranks* ranks) {
-  tracker.update(master, particles, surface, std::numeric_limits<double>::infinity(), ranks);
+void ParticlesOnSurface<D>::update(std::span<const Vector4> particles, std::span<const Vector4> surface, Ranks* ranks, const std::vector<Index>* own) {
+  constexpr double everywhere = std::numeric_limits<double>::infinity();
   gaps.resize(particles.size());
-  const auto closest = tracker.closest();
-  for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = closest[i].gap;
+  if (own != nullptr) {
+    tracker.update_own(master, particles, surface, everywhere, *ranks, *own);
+    for (const Index i : *own) gaps[i] = tracker.closest()[i].gap;
+    return;
+  }
+  tracker.update(master, particles, surface, everywhere, ranks);
+  for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = tracker.closest()[i].gap;
+}
+
+template <int D>
+void ParticlesOnSurface<D>::tell_own(Ranks& ranks, const std::vector<Index>& own) {
+  tracker.tell_own(ranks, own);
+  for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = tracker.closest()[i].gap;
 }
 
 TACTOID_INLINE TermEnergy VanDerWaals::apply(const ParticleFields& a, const ParticleFields& b, double) {
@@ -19,6 +30,10 @@ TACTOID_INLINE TermEnergy VanDerWaals::apply(const ParticleFields& a, const Part
 
 TACTOID_INLINE double VanDerWaals::stiffness_rate(const ParticleFields& a, const ParticleFields& b) const {
   return particles.visit([&](const auto& p) { return rate_of(p, a, b); });
+}
+
+TACTOID_INLINE void VanDerWaals::tell_own(Ranks& ranks, const std::vector<Index>& own) {
+  if (reads_own_alone()) particles.visit([&](auto& p) { p.tell_own(ranks, own); });
 }
 
 TACTOID_INLINE std::span<const double> VanDerWaals::gaps() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <filesystem>
@@ -65,6 +66,16 @@ class Ranks {
   virtual void gather(std::span<double> values, std::span<const std::size_t> first) = 0;
   virtual void gather(std::span<Index> values, std::span<const std::size_t> first) = 0;
   ///@}
+  /// As many numbers of each rank, for all: those of rank 0 first. Collective.
+  [[nodiscard]] std::vector<double> gather_from_each(std::span<const double> numbers) {
+    const auto count = static_cast<std::size_t>(size());
+    std::vector<double> values(count * numbers.size());
+    std::vector<std::size_t> first(count + 1);
+    for (std::size_t r = 0; r <= count; ++r) first[r] = r * numbers.size();
+    std::copy(numbers.begin(), numbers.end(), values.begin() + static_cast<std::ptrdiff_t>(first[static_cast<std::size_t>(rank())]));
+    gather(values, first);
+    return values;
+  }
   /// One list for each rank, which gets it; what comes from each of them. Collective.
   [[nodiscard]] virtual std::vector<std::vector<double>> exchange(std::vector<std::vector<double>> lists) = 0;
   /// Opens a file that exists, for all ranks to write into. Collective; throws FileError on all of them.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <tactoid/core/ranks.hpp>
 #include <tactoid/core/tensor.hpp>
@@ -18,6 +19,8 @@ struct ParticleFields {
   std::span<const double> volume;      ///< reference nodal volume, m³
   std::span<Vector4> force;            ///< N
   Ranks* ranks = nullptr;              ///< processes that share the bodies, and evaluate each term together; null: this one alone
+  /// Where the processes sum in their own order (SumOrder::of_ranks): the particles that belong to this one, ascending; null: it computes what falls on any.
+  const std::vector<Index>* own = nullptr;
 };
 
 /// Which particles of a body a contact or a boundary term reads and loads. One that says `static constexpr Reads reads =

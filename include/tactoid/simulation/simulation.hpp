@@ -134,9 +134,12 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     complete();
     return std::get<N>(bodies_);
   }
-  /// The contact number N of Contacts{…}, to read what it holds.
+  /// The contact number N of Contacts{…}, to read what it holds; whole, as body().
   template <std::size_t N>
-  [[nodiscard]] auto& contact() { return std::get<N>(contacts_).contact; }
+  [[nodiscard]] auto& contact() {
+    complete();
+    return std::get<N>(contacts_).contact;
+  }
   /// The term number N of Boundaries{…}, or its prescribed motion.
   template <std::size_t N>
   [[nodiscard]] auto& boundary() { return std::get<N>(boundaries_).term; }
@@ -786,6 +789,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       body.share_with(decomposition_->share(b));
       fields_[b].ranks = &ranks;
+      if (in_order_of_ranks()) fields_[b].own = &body.share()->own;
       terms_.resize(std::max(terms_.size(), body.size()));
     });
     give_back_elsewhere();
@@ -821,7 +825,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     part.known = part.motion;
     part.known.push_back(&body.force);  // velocities at the present instant need it
     part.whole = part.known;
-    if (loaded(b)) part.whole.insert(part.whole.end(), {&fields.position, &fields.velocity});
+    if (loaded(b)) part.whole.insert(part.whole.end(), {&fields.position, &fields.velocity, &fields.force});
     if constexpr (Body::has_director) part.whole.push_back(&body.director_flux);
     body.for_each_region([&](const auto& region, Index) { part.region_cost.push_back(Body::template cost_of_point<typename std::decay_t<decltype(region)>::Material>); });
     // Interpolated values, and conditions on them, take in the unknowns around.
@@ -831,7 +835,8 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     };
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
-      note(Pair::first, reads_a_of<std::decay_t<decltype(between.contact)>>);
+      const bool own = in_order_of_ranks() && reads_own_alone(between.contact);
+      note(Pair::first, own ? Reads::facets : reads_a_of<std::decay_t<decltype(between.contact)>>);
       note(Pair::second, reads_b_of<std::decay_t<decltype(between.contact)>>);
     });
     for_each_boundary([&](auto& on, std::size_t) {
@@ -855,7 +860,21 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
   /// Makes what the last evaluation left known to all processes; nothing where that has been done.
   void complete() const {
-    if (decomposition_ && std::exchange(incomplete_, false)) decomposition_->complete();
+    if (!decomposition_ || !std::exchange(incomplete_, false)) return;
+    decomposition_->complete();
+    std::apply([&](auto&... c) { (tell_own(c), ...); }, contacts_);
+  }
+  template <class Between>
+  void tell_own(Between& between) const {
+    using Pair = std::decay_t<Between>;
+    if constexpr (TellsOwn<decltype(between.contact)>) {
+      const BodyFields& fields = fields_[Pair::first];
+      if (fields.own != nullptr) between.contact.tell_own(*fields.ranks, *fields.own);
+    }
+  }
+  /// Whether processes that share the simulation sum in their own order, and each of them needs to know its particles alone.
+  [[nodiscard]] static bool in_order_of_ranks() {
+    return !synchronous<I> && Ranks::current != nullptr && Ranks::current->size() > 1 && Ranks::current->sum_order == SumOrder::of_ranks;
   }
   /// And the rates of the directors.
   void complete_rates() {
@@ -871,7 +890,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
   }
 
   std::tuple<B...> bodies_;
-  std::tuple<C...> contacts_;
+  mutable std::tuple<C...> contacts_;  // complete() is called by who only looks
   std::tuple<T...> boundaries_;
   I integrator_;
   std::array<BodyFields, body_count> fields_;
