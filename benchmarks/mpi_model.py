@@ -13,6 +13,7 @@ ROW = 57  # pairs of a row at the support 2.35: particles within two layers and 
 REACH = 2.02  # layers of particles that a row reaches beyond its point: from the measured halo of the block of 54³
 CHUNK = 2048  # points of large bodies
 UNPACK = 30e-9  # s per chunk of the whole body, on every rank
+LOOK = 3e-9  # s per particle of a surface, on every rank
 
 
 def step(N, P, by_rank, c, latency, bandwidth, surface, contact):
@@ -30,9 +31,12 @@ def step(N, P, by_rank, c, latency, bandwidth, surface, contact):
         chunks = N / CHUNK * (56 / bandwidth + UNPACK)  # all chunks to all ranks
         sums = chunks + 8 * max(n, N / min(P, 64)) / bandwidth  # kinetic energy: 64 parts are summed by 64 ranks at most
     known = surface * 6 * whole**2
-    # Four fifths of a contact's time follow closest points, which is divided; 88 bytes for each point go to all ranks.
-    contacts = known * ((72 + 88) / bandwidth + contact * (0.2 + 0.8 / P))
-    calls = 6 if known > 0 else 4  # with a contact: what is known to all, and closest points
+    if by_rank:  # contacts are divided, but that each rank looks how far the surfaces have moved
+        contacts = known * (72 / bandwidth + LOOK + contact / P)
+        calls = 9 if known > 0 else 4  # what is known to all, whether to search, forces (two), energies
+    else:  # four fifths of a contact's time follow closest points, which is divided; 88 bytes for each point go to all ranks
+        contacts = known * ((72 + 88) / bandwidth + contact * (0.2 + 0.8 / P))
+        calls = 6 if known > 0 else 4  # what is known to all, and closest points
     wait = calls * latency * math.log2(P)
     return c * ROW * N / P, work, tell, sums, contacts, wait
 

@@ -401,6 +401,25 @@ TEST_CASE("A cell on a substrate") {
   compare_by_rank(compose, compute, 1e-11, scattered);
 }
 
+TEST_CASE("Contacts on either side, by each measure of the area, and several in one") {
+  const auto compose = [] {
+    Body upper = slab(jitter(box({.size = Point<3>(2.0 * um, 2.0 * um, 1.0 * um), .cells = {8, 7, 4}, .origin = {-0.9 * um, -1.1 * um, 0.08 * um}}), 0.1), 16);
+    Body lower = slab(jitter(box({.size = Point<3>(2.4 * um, 2.2 * um, 1.0 * um), .cells = {7, 8, 4}, .origin = {-1.2 * um, -1.1 * um, -1.0 * um}}), 0.1), 16);
+    shake(upper, 2.0);
+    return Simulation{Bodies{std::move(upper), std::move(lower)},
+                      Contacts{between<0, 1>(LigandReceptor{.area = ContactArea::current, .sampled = ContactSide::both}), between<1, 0>(LigandReceptor{.area = ContactArea::mobile}),
+                               between<0, 1>(Combined{VanDerWaals{}, SurfaceContact<RepulsiveWall>{.sampled = ContactSide::second}}), between<1, 0>(VanDerWaals{.reaction = true})},
+                      Boundaries{}, CentralDifference{}};
+  };
+  const auto compute = [](auto& simulation) {
+    take(simulation, 40);
+    return whole(simulation);
+  };
+  compare(compose, compute);
+  compare_by_rank(compose, compute, 1e-11);
+  compare_by_rank(compose, compute, 1e-11, scattered);
+}
+
 TEST_CASE("A cell and a substrate in steps of their own") {
   const auto compose = [] { return cell(SubcycledCentralDifference{CentralDifference{}, 8}, 1000.0); };
   const auto compute = [](auto& simulation) {

@@ -102,6 +102,8 @@ struct LigandReceptor {
   TermEnergy apply(const ParticleFields& a, const ParticleFields& b, double);
   /// Bonds are carried along with A's surface, also where particles slide along it: their number stays. Those on B's stay where they are.
   void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&);
+  /// See SurfaceContactEngine.
+  void tell_own(Ranks& ranks, const std::vector<Index>&) { engine.tell_own(ranks); }
   /// Bound of ω² at the present gaps, 1/s².
   [[nodiscard]] double stiffness_rate(const ParticleFields& a, const ParticleFields& b) const;
   /// At the gaps of the last call of apply; see ContactPass::emit_stiffness.

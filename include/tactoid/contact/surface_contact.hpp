@@ -8,6 +8,7 @@
 
 #include <tactoid/contact/contact.hpp>
 #include <tactoid/contact/facet_derivatives.hpp>
+#include <tactoid/contact/forces_found.hpp>
 #include <tactoid/contact/gap_law.hpp>
 #include <tactoid/contact/per_dimension.hpp>
 #include <tactoid/contact/surface.hpp>
@@ -53,36 +54,10 @@ class ContactPass {
   template <GapLaw Law>
   TermEnergy apply(const Law& law, const ParticleFields& slave, const ParticleFields& master, ContactArea area,
                    double factor) {
-    locate(slave);
+    parallel_for(points_.size(), [&](std::size_t q) { locate(slave, q); });
     tracker_.update(master_, points_, master.position, law.reach(), master.ranks);
     const auto closest = tracker_.closest();
-    parallel_for(points_.size(), [&](std::size_t q) {
-      State& s = states_[q];
-      const double gap = closest[q].gap;
-      s.force = s.energy = s.area_power = 0.0;
-      if (gap >= law.reach()) return;
-      const double density = law.potential(gap);
-      double a = quadrature_.area[q];
-      if (area == ContactArea::mobile) {
-        const auto& p = quadrature_.point(q);
-        const Index f = quadrature_.facet_of(q);
-        const FacetTangents x = slave_.tangents(f, p.local, slave.position);
-        const Vector3 c = x.area_vector();
-        a = p.weight * c.norm();
-        const auto slopes = area_slopes(slave_, p.local, x, c.normalized());
-        for (std::size_t k = 0; k < slopes.size(); ++k) s.along[k] = (-factor * density * p.weight) * slopes[k];
-      } else if (area == ContactArea::current) {
-        const auto& p = quadrature_.point(q);
-        const FacetTangents x = slave_.tangents(quadrature_.facet_of(q), p.local, slave.position);
-        const FacetTangents v = slave_.tangent_rates(quadrature_.facet_of(q), p.local, slave.velocity);
-        const Vector3 normal = x.area_vector();
-        a = p.weight * normal.norm();
-        s.area_power = factor * p.weight * density * normal.normalized().dot(v.s.cross(x.t) + x.s.cross(v.t));
-      }
-      s.area = a;
-      s.force = factor * a * law.traction(gap);
-      s.energy = factor * a * density;
-    });
+    parallel_for(points_.size(), [&](std::size_t q) { evaluate(law, slave, area, factor, q); });
     TermEnergy total;
     for (std::size_t q = 0; q < points_.size(); ++q) {
       const State& s = states_[q];
@@ -105,6 +80,35 @@ class ContactPass {
     }
     return total;
   }
+
+  /// The same where each of several processes does so for the facets that belong to it, by their first node: it tells what it has found, and adds nothing. Collective.
+  template <GapLaw Law>
+  TermEnergy find(const Law& law, const ParticleFields& slave, const ParticleFields& master, ContactArea area, double factor, ForcesFound& on_slave,
+                  ForcesFound& on_master) {
+    follow_own(slave, master, law.reach());
+    const auto closest = tracker_.closest();
+    parallel_for(own_.size(), [&](std::size_t k) { evaluate(law, slave, area, factor, own_[k]); });
+    TermEnergy total;
+    for (const Index q : own_) {
+      const State& s = states_[q];
+      total.potential += s.energy;
+      total.external_power += s.area_power;
+      if (!(closest[q].gap < law.reach())) continue;
+      const double stiffness = 2.0 * factor * s.area * law.stiffness(closest[q].gap);
+      const Vector3 force = s.force * closest[q].normal;
+      const auto& from = slave_.facets[quadrature_.facet_of(q)];
+      const auto& onto = master_.facets[closest[q].facet];
+      const auto& n = quadrature_.point(q).shape;
+      const auto m = FacetSurface<D>::shape(closest[q].local);
+      for (std::size_t k = 0; k < from.size(); ++k) {
+        on_slave.add(from[k], area == ContactArea::mobile ? Vector3(n[k] * force + s.along[k]) : Vector3(n[k] * force), stiffness * n[k]);
+        on_master.add(onto[k], -m[k] * force, stiffness * m[k]);
+      }
+    }
+    return total;
+  }
+  /// Makes the closest points that each process follows known to all. Collective.
+  void tell_own(Ranks& ranks) { tracker_.tell_own(ranks, own_); }
 
   /// Row sums of the stiffness (N/m) at the gaps of the last step, added per particle: Gershgorin's bound of
   /// ω² is their largest ratio to the mass. The turning of the normal around edges and corners is left out: it is
@@ -198,10 +202,40 @@ class ContactPass {
     double area = 0.0, force = 0.0, energy = 0.0, area_power = 0.0;
     std::array<Vector3, FacetSurface<D>::corners> along{};  // on the nodes, of the tension that adhesion takes away (ContactArea::mobile)
   };
-  void locate(const ParticleFields& slave) {
-    parallel_for(points_.size(), [&](std::size_t q) {
-      points_[q] = slave_.interpolate(quadrature_.facet_of(q), quadrature_.point(q).local, slave.position);
-    });
+  void locate(const ParticleFields& slave, std::size_t q) {
+    points_[q] = slave_.interpolate(quadrature_.facet_of(q), quadrature_.point(q).local, slave.position);
+  }
+  /// Brings the closest points of own points to the present positions.
+  void follow_own(const ParticleFields& slave, const ParticleFields& master, double reach);
+
+  /// What the law says at point q.
+  template <GapLaw Law>
+  void evaluate(const Law& law, const ParticleFields& slave, ContactArea area, double factor, std::size_t q) {
+    State& s = states_[q];
+    const double gap = tracker_.closest()[q].gap;
+    s.force = s.energy = s.area_power = 0.0;
+    if (gap >= law.reach()) return;
+    const double density = law.potential(gap);
+    double a = quadrature_.area[q];
+    if (area == ContactArea::mobile) {
+      const auto& p = quadrature_.point(q);
+      const Index f = quadrature_.facet_of(q);
+      const FacetTangents x = slave_.tangents(f, p.local, slave.position);
+      const Vector3 c = x.area_vector();
+      a = p.weight * c.norm();
+      const auto slopes = area_slopes(slave_, p.local, x, c.normalized());
+      for (std::size_t k = 0; k < slopes.size(); ++k) s.along[k] = (-factor * density * p.weight) * slopes[k];
+    } else if (area == ContactArea::current) {
+      const auto& p = quadrature_.point(q);
+      const FacetTangents x = slave_.tangents(quadrature_.facet_of(q), p.local, slave.position);
+      const FacetTangents v = slave_.tangent_rates(quadrature_.facet_of(q), p.local, slave.velocity);
+      const Vector3 normal = x.area_vector();
+      a = p.weight * normal.norm();
+      s.area_power = factor * p.weight * density * normal.normalized().dot(v.s.cross(x.t) + x.s.cross(v.t));
+    }
+    s.area = a;
+    s.force = factor * a * law.traction(gap);
+    s.energy = factor * a * density;
   }
 
   FacetSurface<D> slave_, master_;
@@ -209,6 +243,8 @@ class ContactPass {
   ClosestPointTracker<D> tracker_;
   Field points_;
   std::vector<State> states_;
+  std::vector<Index> own_;                         // points of this process, where each finds some
+  const std::vector<Index>* own_of_ = nullptr;     // the particles that they are points of
 };
 
 /// The passes of a contact: body A's facets against B's, B's against A's, or both with half the weight each.
@@ -227,6 +263,7 @@ class SurfaceContactEngine {
   /// Adds the forces of the passes; returns their energy, and the power of growing areas.
   template <GapLaw Law>
   TermEnergy apply(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area) {
+    if (divided(a, b)) return apply_own(law, a, b, area);
     TermEnergy total;
     if (first_sampled()) total += forth_.visit([&](auto& pass) { return pass.apply(law, a, b, area, factor()); });
     if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.apply(law, b, a, area, factor()); });
@@ -239,6 +276,7 @@ class SurfaceContactEngine {
   /// Gershgorin's bound of ω² at the gaps of the last call of apply, 1/s².
   template <GapLaw Law>
   double stiffness_rate(const Law& law, const ParticleFields& a, const ParticleFields& b) const {
+    if (divided(a, b)) return rate_;
     std::vector<double> sum_a(a.mass.size(), 0.0), sum_b(b.mass.size(), 0.0);
     if (first_sampled()) forth_.visit([&](const auto& pass) { pass.add_stiffness(law, factor(), sum_a, sum_b); });
     if (!back_.empty()) back_.visit([&](const auto& pass) { pass.add_stiffness(law, factor(), sum_b, sum_a); });
@@ -254,6 +292,9 @@ class SurfaceContactEngine {
     if (first_sampled()) forth_.visit([&](const auto& pass) { pass.emit_stiffness(law, a, b, area, factor(), emit); });
     if (!back_.empty()) back_.visit([&](const auto& pass) { pass.emit_stiffness(law, b, a, area, factor(), detail::exchanged(emit)); });
   }
+
+  /// Makes the closest points that each process follows known to all. Collective.
+  void tell_own(Ranks& ranks);
 
   /// The pass of A's facets (of B's, where these alone are sampled): closest points, quadrature, surfaces, as f(const ContactPass<D>&).
   template <class F>
@@ -273,7 +314,28 @@ class SurfaceContactEngine {
   [[nodiscard]] bool first_sampled() const { return !forth_.empty() || back_.empty(); }  // before initialize() too: visit() throws then
   [[nodiscard]] double factor() const { return forth_.empty() || back_.empty() ? 1.0 : 0.5; }
 
+  /// Whether each process finds the forces at its own facets.
+  [[nodiscard]] static bool divided(const ParticleFields& a, const ParticleFields& b) { return a.own != nullptr && b.own != nullptr; }
+  template <GapLaw Law>
+  TermEnergy apply_own(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area) {
+    TermEnergy total;
+    if (first_sampled()) total += forth_.visit([&](auto& pass) { return pass.find(law, a, b, area, factor(), on_a_, on_b_); });
+    if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.find(law, b, a, area, factor(), on_b_, on_a_); });
+    const double rate = bring_to_owners(on_a_, a, on_b_, b);
+    const std::vector<double> all = a.ranks->gather_from_each(std::array{total.potential, total.external_power, rate});
+    total = {};
+    rate_ = 0.0;
+    for (std::size_t k = 0; k < all.size(); k += 3) {
+      total.potential += all[k];
+      total.external_power += all[k + 1];
+      rate_ = std::max(rate_, all[k + 2]);
+    }
+    return total;
+  }
+
   PerDimension<ContactPass> forth_, back_;
+  ForcesFound on_a_, on_b_;
+  double rate_ = 0.0;  // of all processes at the last call of apply, where they are divided
 };
 
 /// A Contact in 2 and 3 dimensions from any GapLaw: `SurfaceContact{.law = MyLaw{…}}`.
@@ -307,6 +369,8 @@ struct SurfaceContact {
   }
   /// See SurfaceContactEngine.
   void redistribute(const SurfaceTransfer& surface, const ParticleFields&, const ParticleFields&) { engine.redistribute(surface); }
+  /// See SurfaceContactEngine.
+  void tell_own(Ranks& ranks, const std::vector<Index>&) { engine.tell_own(ranks); }
   /// For checkpoints: the closest points that are followed.
   template <class Archive>
   void state(Archive& archive) { archive.part("engine", engine); }

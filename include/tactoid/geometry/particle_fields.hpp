@@ -21,6 +21,7 @@ struct ParticleFields {
   Ranks* ranks = nullptr;              ///< processes that share the bodies, and evaluate each term together; null: this one alone
   /// Where the processes sum in their own order (SumOrder::of_ranks): the particles that belong to this one, ascending; null: it computes what falls on any.
   const std::vector<Index>* own = nullptr;
+  const std::vector<int>* owner = nullptr;  ///< beside `own`: the process of each particle
 };
 
 /// Which particles of a body a contact or a boundary term reads and loads. One that says `static constexpr Reads reads =

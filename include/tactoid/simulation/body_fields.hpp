@@ -13,6 +13,7 @@ struct BodyFields {
   Field force;             ///< of contacts and boundary terms, N
   Ranks* ranks = nullptr;  ///< that share the body
   const std::vector<Index>* own = nullptr;  ///< particles of this one, as ParticleFields has them
+  const std::vector<int>* owner = nullptr;  ///< beside them
 
   /// The reference configuration of a body, at rest.
   template <class Body>
@@ -68,7 +69,7 @@ struct BodyFields {
   /// As contacts and terms take it; valid as long as this object and the body, and until its reference is updated.
   template <class Body>
   [[nodiscard]] ParticleFields view(const Body& body) {
-    return {body.reference(), position, velocity, body.masses(), body.nodal_volumes(), force, ranks, own};
+    return {body.reference(), position, velocity, body.masses(), body.nodal_volumes(), force, ranks, own, owner};
   }
 };
 

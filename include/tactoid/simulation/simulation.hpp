@@ -789,7 +789,10 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       body.share_with(decomposition_->share(b));
       fields_[b].ranks = &ranks;
-      if (in_order_of_ranks()) fields_[b].own = &body.share()->own;
+      if (in_order_of_ranks() && body.particle_values().identity()) {
+        fields_[b].own = &body.share()->own;
+        fields_[b].owner = &body.share()->particle_owner;
+      }
       terms_.resize(std::max(terms_.size(), body.size()));
     });
     give_back_elsewhere();
