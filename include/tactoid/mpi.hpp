@@ -9,6 +9,8 @@
 
 #else
 
+#include <cstddef>
+
 #include <tactoid/core/ranks.hpp>
 
 namespace tactoid::mpi {
@@ -30,6 +32,7 @@ class Session {
   [[nodiscard]] int size() const { return 1; }  ///< number of processes
   SumOrder sum_order = SumOrder::of_one_process;  ///< without effect
   SetUp set_up = SetUp::whole;                    ///< without effect
+  std::size_t divided_contacts_from = 8192;       ///< without effect
 };
 
 }  // namespace tactoid::mpi

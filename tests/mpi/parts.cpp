@@ -677,6 +677,7 @@ TEST_CASE("What needs the whole is refused, on all ranks") {
 int main(int argc, char** argv) {
   mpi::Session all(argc, argv);
   session = &all;
+  all.divided_contacts_from = 0;  // however small
   session->sum_order = SumOrder::of_ranks;
   doctest::Context context(argc, argv);
   context.setOption("minimal", all.rank() != 0);

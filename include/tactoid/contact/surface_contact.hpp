@@ -263,7 +263,8 @@ class SurfaceContactEngine {
   /// Adds the forces of the passes; returns their energy, and the power of growing areas.
   template <GapLaw Law>
   TermEnergy apply(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area) {
-    if (divided(a, b)) return apply_own(law, a, b, area);
+    divided_ = a.own != nullptr && b.own != nullptr && points() >= a.ranks->divided_contacts_from;
+    if (divided_) return apply_own(law, a, b, area);
     TermEnergy total;
     if (first_sampled()) total += forth_.visit([&](auto& pass) { return pass.apply(law, a, b, area, factor()); });
     if (!back_.empty()) total += back_.visit([&](auto& pass) { return pass.apply(law, b, a, area, factor()); });
@@ -276,7 +277,7 @@ class SurfaceContactEngine {
   /// Gershgorin's bound of ω² at the gaps of the last call of apply, 1/s².
   template <GapLaw Law>
   double stiffness_rate(const Law& law, const ParticleFields& a, const ParticleFields& b) const {
-    if (divided(a, b)) return rate_;
+    if (divided_) return rate_;
     std::vector<double> sum_a(a.mass.size(), 0.0), sum_b(b.mass.size(), 0.0);
     if (first_sampled()) forth_.visit([&](const auto& pass) { pass.add_stiffness(law, factor(), sum_a, sum_b); });
     if (!back_.empty()) back_.visit([&](const auto& pass) { pass.add_stiffness(law, factor(), sum_b, sum_a); });
@@ -314,8 +315,11 @@ class SurfaceContactEngine {
   [[nodiscard]] bool first_sampled() const { return !forth_.empty() || back_.empty(); }  // before initialize() too: visit() throws then
   [[nodiscard]] double factor() const { return forth_.empty() || back_.empty() ? 1.0 : 0.5; }
 
-  /// Whether each process finds the forces at its own facets.
-  [[nodiscard]] static bool divided(const ParticleFields& a, const ParticleFields& b) { return a.own != nullptr && b.own != nullptr; }
+  /// Number of sampled points.
+  [[nodiscard]] std::size_t points() const {
+    const auto of = [](const auto& passes) { return passes.empty() ? std::size_t{0} : passes.visit([](const auto& pass) { return pass.quadrature().size(); }); };
+    return of(forth_) + of(back_);
+  }
   template <GapLaw Law>
   TermEnergy apply_own(const Law& law, const ParticleFields& a, const ParticleFields& b, ContactArea area) {
     TermEnergy total;
@@ -335,7 +339,8 @@ class SurfaceContactEngine {
 
   PerDimension<ContactPass> forth_, back_;
   ForcesFound on_a_, on_b_;
-  double rate_ = 0.0;  // of all processes at the last call of apply, where they are divided
+  bool divided_ = false;  // each process finds the forces at its own facets
+  double rate_ = 0.0;     // of all processes at the last call of apply, where they are divided
 };
 
 /// A Contact in 2 and 3 dimensions from any GapLaw: `SurfaceContact{.law = MyLaw{…}}`.

@@ -30,6 +30,7 @@ void ContactPass<D>::follow_own(const ParticleFields& slave, const ParticleField
 }
 
 TACTOID_INLINE void SurfaceContactEngine::tell_own(Ranks& ranks) {
+  if (!divided_) return;
   if (!forth_.empty()) forth_.visit([&](auto& pass) { pass.tell_own(ranks); });
   if (!back_.empty()) back_.visit([&](auto& pass) { pass.tell_own(ranks); });
 }

@@ -53,6 +53,9 @@ class Ranks {
 
   SumOrder sum_order = SumOrder::of_one_process;  ///< of simulations, as it is when they are composed; the same on all ranks
   SetUp set_up = SetUp::whole;                    ///< of bodies, as it is when they are composed; the same on all ranks
+  /// In the order of the ranks, contacts are divided of bodies with at least so many particles, and of surfaces with at least so many sampled points; what is smaller is computed by each rank in
+  /// less time than it takes to tell. As it is when simulations are composed; the same on all ranks.
+  std::size_t divided_contacts_from = 8192;
 
   [[nodiscard]] virtual int rank() const = 0;  ///< of this process, in [0, size())
   [[nodiscard]] virtual int size() const = 0;  ///< number of processes

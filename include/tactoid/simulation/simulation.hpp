@@ -789,7 +789,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     for_each_body([&](auto& body, std::size_t b) {
       body.share_with(decomposition_->share(b));
       fields_[b].ranks = &ranks;
-      if (in_order_of_ranks() && body.particle_values().identity()) {
+      if (divides_contacts(body) && body.particle_values().identity()) {
         fields_[b].own = &body.share()->own;
         fields_[b].owner = &body.share()->particle_owner;
       }
@@ -838,7 +838,7 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
     };
     for_each_contact([&](auto& between, std::size_t) {
       using Pair = std::decay_t<decltype(between)>;
-      const bool own = in_order_of_ranks() && reads_own_alone(between.contact);
+      const bool own = divides_contacts(body) && reads_own_alone(between.contact);
       note(Pair::first, own ? Reads::facets : reads_a_of<std::decay_t<decltype(between.contact)>>);
       note(Pair::second, reads_b_of<std::decay_t<decltype(between.contact)>>);
     });
@@ -875,9 +875,11 @@ class Simulation<Bodies<B...>, Contacts<C...>, Boundaries<T...>, I> {
       if (fields.own != nullptr) between.contact.tell_own(*fields.ranks, *fields.own);
     }
   }
-  /// Whether processes that share the simulation sum in their own order, and each of them needs to know its particles alone.
-  [[nodiscard]] static bool in_order_of_ranks() {
-    return !synchronous<I> && Ranks::current != nullptr && Ranks::current->size() > 1 && Ranks::current->sum_order == SumOrder::of_ranks;
+  /// Whether each of the processes that share the simulation computes contacts of its own particles of a body: where they sum in their own order, and the body is not small.
+  template <class Body>
+  [[nodiscard]] static bool divides_contacts(const Body& body) {
+    if (synchronous<I> || Ranks::current == nullptr || Ranks::current->size() == 1 || Ranks::current->sum_order == SumOrder::of_one_process) return false;
+    return (body.in_parts() ? body.cloud().part->whole : body.size()) >= Ranks::current->divided_contacts_from;
   }
   /// And the rates of the directors.
   void complete_rates() {
