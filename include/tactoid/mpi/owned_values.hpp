@@ -81,35 +81,23 @@ inline void combine(MPI_Comm ranks, std::span<double> values) {
   wait(request);
 }
 
-/// Places of the lists of all ranks, one behind the other.
-struct JoinedLists {
-  std::vector<int> counts;  ///< numbers of each rank
-  std::vector<int> places;  ///< where they begin, and behind them the end
-  /// Of lists that have so many numbers here. Collective.
-  JoinedLists(MPI_Comm ranks, std::size_t here) {
-    int size = 1;
-    MPI_Comm_size(ranks, &size);
-    const int own = as_count(here);
-    counts.resize(static_cast<std::size_t>(size));
-    places.assign(counts.size() + 1, 0);
-    MPI_Request request = MPI_REQUEST_NULL;
-    succeeded(MPI_Iallgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, ranks, &request));
-    wait(request);
-    std::size_t all = 0;
-    for (std::size_t r = 0; r < counts.size(); ++r) all += static_cast<std::size_t>(counts[r]), places[r + 1] = as_count(all);
-  }
-  [[nodiscard]] std::vector<double> room() const { return std::vector<double>(static_cast<std::size_t>(places.back())); }  ///< for all of them
-};
-
 /// The lists of all ranks, one behind the other. Collective.
 [[nodiscard]] inline std::vector<double> join(MPI_Comm ranks, std::span<const double> list) {
-  const JoinedLists lists(ranks, list.size());
-  std::vector<double> joined = lists.room();
+  int size = 1;
+  MPI_Comm_size(ranks, &size);
+  const int own = as_count(list.size());
+  std::vector<int> counts(static_cast<std::size_t>(size)), places(static_cast<std::size_t>(size) + 1, 0);
   MPI_Request request = MPI_REQUEST_NULL;
-  succeeded(MPI_Iallgatherv(list.data(), as_count(list.size()), MPI_DOUBLE, joined.data(), lists.counts.data(), lists.places.data(), MPI_DOUBLE, ranks, &request));
+  succeeded(MPI_Iallgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, ranks, &request));
+  wait(request);
+  std::size_t all = 0;
+  for (std::size_t r = 0; r < counts.size(); ++r) all += static_cast<std::size_t>(counts[r]), places[r + 1] = as_count(all);
+  std::vector<double> joined(all);
+  succeeded(MPI_Iallgatherv(list.data(), own, MPI_DOUBLE, joined.data(), counts.data(), places.data(), MPI_DOUBLE, ranks, &request));
   wait(request);
   return joined;
 }
+
 /// Sums over items that each belong to one rank: each rank its own, then rank after rank.
 class SumByRank {
  public:
