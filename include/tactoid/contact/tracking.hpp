@@ -97,6 +97,18 @@ class ClosestPointTracker {
     c.normal = place.template segment<3>(D + 2);
     c.gap = place[D + 5];
   }
+  /// What processes tell each other of a closest point.
+  static constexpr std::size_t packed_size = D + 8;
+  static void pack(const ClosestPoint<D>& c, double* out) {
+    out[0] = c.facet;
+    out[1] = c.on_rim ? 1.0 : 0.0;
+    Eigen::Map<Place>(out + 2) = place_of(c);
+  }
+  static void unpack(const double* in, ClosestPoint<D>& c) {
+    c.facet = static_cast<Index>(in[0]);
+    c.on_rim = in[1] != 0.0;
+    put(Eigen::Map<const Place>(in + 2), c);
+  }
   /// The global search for some query points; null: for all.
   void search(const FacetSurface<D>& surface, std::span<const Vector4> queries, std::span<const Vector4> x, double reach, const std::vector<Index>* some);
   /// Points that must be followed until the next global search.

@@ -98,27 +98,15 @@ void ClosestPointTracker<D>::update(const FacetSurface<D>& surface, std::span<co
   if (ranks == nullptr || awake_.size() < few * static_cast<std::size_t>(ranks->size())) return follow(surface, queries, x, 0, awake_.size());
 
   const auto size = static_cast<std::size_t>(ranks->size()), rank = static_cast<std::size_t>(ranks->rank());
-  constexpr std::size_t width = D + 8;
+  constexpr std::size_t width = packed_size;
   std::vector<std::size_t> first(size + 1);
   for (std::size_t r = 0; r <= size; ++r) first[r] = awake_.size() * r / size;
   follow(surface, queries, x, first[rank], first[rank + 1]);
   std::vector<double> values(awake_.size() * width);
-  for (std::size_t k = first[rank]; k < first[rank + 1]; ++k) {
-    const ClosestPoint<D>& c = closest_[awake_[k]];
-    double* v = values.data() + k * width;
-    v[0] = c.facet;
-    v[1] = c.on_rim ? 1.0 : 0.0;
-    Eigen::Map<Place>(v + 2) = place_of(c);
-  }
+  for (std::size_t k = first[rank]; k < first[rank + 1]; ++k) pack(closest_[awake_[k]], values.data() + k * width);
   for (std::size_t& f : first) f *= width;
   ranks->gather(values, first);
-  for (std::size_t k = 0; k < awake_.size(); ++k) {
-    ClosestPoint<D>& c = closest_[awake_[k]];
-    const double* v = values.data() + k * width;
-    c.facet = static_cast<Index>(v[0]);
-    c.on_rim = v[1] != 0.0;
-    put(Eigen::Map<const Place>(v + 2), c);
-  }
+  for (std::size_t k = 0; k < awake_.size(); ++k) unpack(values.data() + k * width, closest_[awake_[k]]);
 }
 
 template <int D>
@@ -135,26 +123,23 @@ void ClosestPointTracker<D>::update_own(const FacetSurface<D>& surface, std::spa
 
 template <int D>
 void ClosestPointTracker<D>::tell_own(Ranks& ranks, const std::vector<Index>& own) {
-  constexpr std::size_t width = D + 13;
-  std::vector<double> list;
-  list.reserve(own.size() * width);
-  for (const Index i : own) {
-    const ClosestPoint<D>& c = closest_[i];
-    const Place place = place_of(c);
-    for (const double x : {double(i), double(c.facet), c.on_rim ? 1.0 : 0.0, asleep_[i] ? 1.0 : 0.0}) list.push_back(x);
-    list.insert(list.end(), place.data(), place.data() + place.size());
-    list.insert(list.end(), queries_then_[i].data(), queries_then_[i].data() + 3);
+  constexpr std::size_t width = 5 + packed_size;  // number, sleep, where the query point was, closest point
+  std::vector<double> list(own.size() * width);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const Index i = own[k];
+    double* v = list.data() + k * width;
+    v[0] = i;
+    v[1] = asleep_[i] ? 1.0 : 0.0;
+    Eigen::Map<Vector3>(v + 2) = queries_then_[i].template head<3>();
+    pack(closest_[i], v + 5);
   }
   for (const std::vector<double>& told : ranks.exchange(std::vector(static_cast<std::size_t>(ranks.size()), list)))
     for (std::size_t k = 0; k < told.size(); k += width) {
       const double* v = told.data() + k;
       const auto i = static_cast<Index>(v[0]);
-      ClosestPoint<D>& c = closest_[i];
-      c.facet = static_cast<Index>(v[1]);
-      c.on_rim = v[2] != 0.0;
-      asleep_[i] = v[3] != 0.0;
-      put(Eigen::Map<const Place>(v + 4), c);
-      queries_then_[i].template head<3>() = Eigen::Map<const Vector3>(v + D + 10);
+      asleep_[i] = v[1] != 0.0;
+      queries_then_[i].template head<3>() = Eigen::Map<const Vector3>(v + 2);
+      unpack(v + 5, closest_[i]);
     }
   find_awake();
 }
